@@ -18,9 +18,9 @@
 typedef struct photon {
     float position[3];    /* world */
     uint32_t flux;        /* W per emitted path's share (times the number of paths emitted), shared exponent */
-    uint16_t direction;   /* the way the light goes, and whether by way of a diffuse vertex: arrival_encode */
+    uint16_t direction;   /* direction of travel, and whether it came by way of a diffuse vertex: arrival_encode */
     uint16_t normal;      /* geometric, on the side it arrived at, octahedral */
-    irradiance_slot slot; /* the irradiance here, once someone has asked for it */
+    irradiance_slot slot; /* the irradiance here, once it has been requested */
 } photon;
 
 _Static_assert(sizeof(photon) == 24, "a photon is 24 bytes, as in the paper");
@@ -136,7 +136,7 @@ static inline uint16_t arrival_encode(vec3 d, bool is_diffuse)
     return (uint16_t)((is_diffuse ? ARRIVAL_IS_DIFFUSE : 0) | (i * ARRIVAL_STEPS + j));
 }
 
-/* Whether a gather ray could have brought this light: it had met a diffuse vertex since it left its lamp. */
+/* Returns whether a gather ray could have found this light: it has met a diffuse vertex since it left its lamp. */
 static inline bool arrival_is_diffuse(uint16_t code) { return code & ARRIVAL_IS_DIFFUSE; }
 
 static inline vec3 arrival_direction(uint16_t code)

@@ -28,29 +28,29 @@ enum { PHOTON_FILE_SETTINGS_MAX = 1024 };
  * before it is filled. */
 typedef struct photon_file_key {
     hash128 scene;                           /* scene_hash_of_light */
-    hash128 aim_view;                        /* what the photons are aimed at; zeros: at everything alike */
+    hash128 aim_view;                        /* the view that photons are aimed at; zeros: none */
     hash128 estimates;                       /* estimate_fingerprint: the program's irradiances */
-    char settings[PHOTON_FILE_SETTINGS_MAX]; /* all else that it depends on, lines "NOUN: VALUE" */
+    char settings[PHOTON_FILE_SETTINGS_MAX]; /* all other settings that it depends on, lines "NOUN: VALUE" */
     char program[56];                        /* version and compiler */
-    char machine[56]; /* what may give other bits: kind and maker of the processor, instruction set of ray traversal */
+    char machine[56]; /* all that may change bits: kind and maker of the processor, instruction set of ray traversal */
 } photon_file_key;
 
 typedef struct photon_file {
-    void *memory; /* all of the file: mapped, or a copy */
+    void *memory; /* the whole file: mapped, or a copy */
     size_t size_bytes;
-    int descriptor; /* of the mapped file; holds our lock */
-    bool is_shared; /* others see what is filled in here, and the file keeps it */
+    int descriptor; /* of the mapped file; holds this process's lock */
+    bool is_shared; /* other processes see results, and the file keeps them */
     int guard;      /* map_guard.h */
     uint64_t nonce; /* of the file that was opened */
     claim_owners owners;
-    uint32_t damaged; /* irradiances that did not have their check byte when it was opened, and are computed again */
+    uint32_t damaged; /* number of irradiances without their check byte when it was opened; they are computed again */
 } photon_file;
 
 typedef enum photon_file_result {
     PHOTON_FILE_OPEN,
     PHOTON_FILE_ABSENT,
-    PHOTON_FILE_FOREIGN,  /* no photon map at all, and not empty: not to be replaced */
-    PHOTON_FILE_REFUSED,  /* damaged, or made of something else; the message says what */
+    PHOTON_FILE_FOREIGN,  /* no photon map, and not empty: must not be replaced */
+    PHOTON_FILE_REFUSED,  /* damaged, or made with another key; the message says which */
     PHOTON_FILE_FAILED,   /* cannot be read, or memory is short; the message says why */
     PHOTON_FILE_CANCELLED /* no message */
 } photon_file_result;
@@ -61,19 +61,18 @@ typedef enum photon_file_result {
 photon_file_result photon_file_open(const run_context *run, const char *path, const photon_file_key *key,
                                     photon_file *out_file, photon_map *out_global, photon_map *out_caustic,
                                     char *message, size_t message_size);
-/* Any photon map, whatever it was made of, as a copy in memory that nobody else sees or fills; its claims count as
- * empty. *out_fixed: a fingerprint of all that never changes in it, what it was made of among it: maps of the same are
- * filled with the same irradiances. Results and message as above. */
+/* Reads a photon map with any key, as a private copy in memory; its claims count as empty. *out_fixed: a fingerprint of
+ * all that never changes in it, its key included: maps with equal ones have the same irradiances. Results and message
+ * as above. */
 photon_file_result photon_file_read(const run_context *run, const char *path, photon_file_key *out_key,
                                     hash128 *out_fixed, photon_file *out_file, photon_map *out_global,
                                     photon_map *out_caustic, char *message, size_t message_size);
 
-/* Whether the file is still the one that was opened. Somebody may cut it short, or copy another one over it, while it
- * is mapped: what was read since the last time this was true need not be the maps'. A copy in memory is always
- * intact. */
+/* Returns whether the file is still the one that was opened. It may be truncated or overwritten while it is mapped:
+ * data read since this was last true may then not be the maps'. A copy in memory is always intact. */
 bool photon_file_is_intact(const photon_file *file);
 
-/* After the maps, and when none of our claims is held. {0} is fine. */
+/* Closes the file, after the maps, when this process holds no claim. {0} is fine. */
 void photon_file_close(photon_file *file);
 
 /* Writes maps into an empty file that is open for writing, space reserved first. Returns 0, or an errno; ECANCELED when

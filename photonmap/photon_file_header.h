@@ -45,23 +45,24 @@ typedef struct photon_file_header {
     hash128 self;    /* of all above */
 } photon_file_header;
 
-/* Zeros, but for the magic and what tells this machine's layout. */
+/* Initialises a header: zeros, except the magic and the members that describe this machine's layout. */
 void photon_file_header_init(photon_file_header *out_header);
-/* Whether these first bytes are those of a map file, whatever follows; size: those there are, of a header at most. */
+/* Returns whether the first bytes of a file are those of a map file; size: the number of bytes read, at most a
+ * header. */
 bool photon_file_header_is_ours(const photon_file_header *h, size_t size);
-/* Whether the file is whole by its length and its header, and fits the key (NULL: any); where not, the message says
- * why. got_bytes: of the header. */
+/* Returns whether the file is complete by its length and header, and fits the key (NULL: any); else the message says
+ * why not. got_bytes: of the header. */
 bool photon_file_header_is_valid(const photon_file_header *h, uint64_t got_bytes, uint64_t file_bytes,
                                  const photon_file_key *key, char *message, size_t message_size);
-hash128 photon_file_header_hash(const photon_file_header *h); /* what `self` should be */
+hash128 photon_file_header_hash(const photon_file_header *h); /* the expected `self` */
 
-/* Sets where the trees lie, from their counts and depths, and the check bytes. Returns the file's size. */
+/* Sets the offsets of the trees and of the check bytes, from counts and depths. Returns the file's size. */
 uint64_t photon_file_lay_out(photon_file_tree trees[PHOTON_FILE_TREE_COUNT], uint64_t *out_checks_at);
 uint64_t photon_file_to_page(uint64_t bytes); /* rounded up to whole pages */
 uint64_t photon_file_blocks_bytes(const photon_file_tree *t);
 uint64_t photon_file_nodes_bytes(const photon_file_tree *t);
 
-/* Hashes the photons and the nodes, which never change. False when cancelled. */
+/* Hashes the photons and the nodes, which never change. Returns false when cancelled. */
 bool photon_file_hash_content(const run_context *run, const photon_tree trees[PHOTON_FILE_TREE_COUNT],
                               hash128 *out_hash);
 

@@ -25,31 +25,32 @@
 #include "run_context.h"
 #include "scene.h"
 
-/* Tracing gives up after so many paths for each photon wanted. */
+/* Tracing gives up after this many paths for each photon wanted. */
 enum { PHOTON_PATHS_MAX = 16 };
 
 typedef enum photon_kind { PHOTON_GLOBAL, PHOTON_CAUSTIC } photon_kind;
 
-/* The ways that the flux went, W, for the whole of the emitted paths. emitted + gained = absorbed + escaped + lost +
- * truncated; arrived = stored + cut + thinned. With a guide each of them is right on average. */
+/* The flux by its destinations, W, of all emitted paths. emitted + gained = absorbed + escaped + lost + truncated;
+ * arrived = stored + cut + thinned. With a guide each of them is right on average. */
 typedef struct energy_balance {
     double emitted[3];   /* at the lamps */
-    double gained[3];    /* by the survivors of roulette, and what paths that are led weigh more, or less, for it */
+    double gained[3];    /* by the survivors of roulette, and by the weights of guided paths, which may be below 1 */
     double absorbed[3];  /* by surfaces and media */
     double escaped[3];   /* out of the scene */
-    double lost[3];      /* by the victims of roulette; and paths that a caustic map has no use for */
+    double lost[3];      /* by the victims of roulette, and by paths of no use to a caustic map */
     double truncated[3]; /* at the cap of path length */
     double arrived[3];   /* at gathered lobes where this map stores */
     double stored[3];    /* in photons, as rounded to their shared exponents */
     double cut[3];       /* arrived on the last path after the map was full */
-    double thinned[3]; /* in photons left out where no light is asked for, less what those carry that stand for them */
+    double thinned[3];   /* in photons left out where no light is requested, less the flux that is added to others for
+                            them */
 } energy_balance;
 
 typedef struct photon_set {
     photon *photons; /* owned, from photon_records_create */
     uint32_t count;
     uint64_t emitted_paths; /* a photon's flux is its stored flux / emitted_paths */
-    uint64_t parts;         /* that splitting has added to them */
+    uint64_t parts;         /* paths that splitting has added */
     uint64_t rays;
     uint64_t rays_cut; /* by TRANSMITTANCE_CROSSINGS_MAX (scene/rays/transmittance.h): absorbed */
     energy_balance balance;
@@ -65,21 +66,20 @@ typedef struct photon_tracing_settings {
     uint64_t seed;
     /* Borrowed; NULL: paths begin by power alone, and every arrival is stored. */
     const emission_guide *guide;    /* where paths begin */
-    const importance_map *asked;    /* elsewhere photons are stored no denser than power alone would have them */
-    const importance_map *onward;   /* diffuse surfaces whose light arrives where it is asked for */
-    const struct onward_ways *ways; /* by which surfaces send it there */
+    const importance_map *asked;    /* where light is requested; elsewhere no denser photons than by power alone */
+    const importance_map *onward;   /* diffuse surfaces whose light arrives where it is requested */
+    const struct onward_ways *ways; /* directions in which surfaces send it there */
     float split_above;  /* [W/m]: there a path is split into its flux, of all three colours, times the root of that
                            importance, over this parts; 0: paths are not split */
     float caustic_root; /* the root of importance of a caustic map, whose paths are split at rough traced lobes: the
-                           mean over the photons of trials that arrive where light is asked for */
+                           mean over the photons of trials that arrive where light is requested */
     double progress_begin, progress_end; /* of AG_PHASE_PHOTONS */
 } photon_tracing_settings;
 
-/* Stores exactly `wanted` photons wherever light can reach that many; else fewer, and says why in a warning. With a
- * number of paths it stores what these bring, so that a photon does not change where other paths store more or fewer;
- * where that would be more than `wanted`, a warning says that fewer paths were emitted. A scene
- * without light gives an empty set, as do caustics where nothing has traced lobes. Errors: AG_ERROR_MEMORY,
- * AG_CANCELLED. */
+/* Traces paths until `wanted` photons are stored; or fewer where light does not reach that many, with a warning that
+ * says why. With a number of paths it stores what these bring, so that a photon does not change where other paths store
+ * more or fewer; where that would be more than `wanted`, a warning says that fewer paths were emitted. A scene without
+ * light gives an empty set, as do caustics where nothing has traced lobes. Errors: AG_ERROR_MEMORY, AG_CANCELLED. */
 ag_status photon_tracing_run(const scene *s, run_context *run, const photon_tracing_settings *settings,
                              photon_set *out_set);
 void photon_set_reset(photon_set *set);
@@ -87,17 +87,16 @@ void photon_set_reset(photon_set *set);
 /* The sums over all trials so far. */
 typedef struct trial_counts {
     uint64_t paths, rays;
-    uint64_t parts;          /* that splitting has added to the paths */
-    uint64_t photons, asked; /* that would be stored; and of those, where light is asked for */
+    uint64_t parts;          /* paths that splitting has added */
+    uint64_t photons, asked; /* photons that would be stored; and those of them that arrive where light is requested */
     double roots;            /* of importance at the latter, their sum */
     double importance;       /* there, its sum [1/m^2] */
 } trial_counts;
 
-/* Tries so many paths, from that number on, which store nothing: a trial's value is the sum over the photons that it
- * would store of their flux times the root of their points' importance, so that what few ask for is not left to
- * a handful of photons. Paths apart from those of photon_tracing_run. The
- * caustics of a scene without traced lobes, and the light of one without lamps, are of no value. Errors:
- * AG_ERROR_MEMORY, AG_CANCELLED. */
+/* Traces `count` trial paths from a number on, which store nothing. A trial's value is the sum, over the photons
+ * that it would store, of their flux times the root of their points' importance, so that what is requested rarely does
+ * not depend on a handful of photons. The paths differ from those of photon_tracing_run. The caustics of a scene
+ * without traced lobes, and the light of one without lamps, have value 0. Errors: AG_ERROR_MEMORY, AG_CANCELLED. */
 ag_status photon_tracing_try(const scene *s, run_context *run, const photon_tracing_settings *settings,
                              uint64_t first_path, uint32_t count, emission_trial *out_trials,
                              trial_counts *in_out_counts);
