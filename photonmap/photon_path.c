@@ -15,6 +15,8 @@
 enum { SCATTERING_CAP = 100 };
 /* Most parts of a path in all, by splitting at all its surfaces. */
 enum { SPLIT_MOST = 4096 };
+/* Where a surface multiplies flux, each part takes so many times what it came with. */
+static const float GAIN_OF_PART = 8.0f;
 /* The room that a block's first photon makes. */
 enum { PHOTONS_FIRST = 1024 };
 /* How many of the ways on by a surface's gathered lobes are led by importons, where there are any. */
@@ -393,12 +395,15 @@ static uint32_t count_parts(const photon_tracer *t, const photon_path *path, con
 {
     const photon_tracing_settings *settings = t->settings;
     bool is_last = path->scatterings >= settings->max_scatterings || path->arrivals >= SCATTERING_CAP;
-    if (!(settings->split_above > 0.0f) || is_last)
+    if (is_last)
         return 1;
-    float flux = path->flux.r + path->flux.g + path->flux.b;
-    if (t->trial)
-        flux /= t->trial->density;
-    float parts = flux * root_of_onward_importance(t, path, hit, m) / settings->split_above;
+    float gain = m->albedo ? 1.0f : bsdf_flux_gain(&m->scattering), parts = gain / GAIN_OF_PART;
+    if (settings->split_above > 0.0f) {
+        float flux = gain * (path->flux.r + path->flux.g + path->flux.b);
+        if (t->trial)
+            flux /= t->trial->density;
+        parts = fmaxf(parts, flux * root_of_onward_importance(t, path, hit, m) / settings->split_above);
+    }
     float most = SPLIT_MOST * path->share;
     return !(parts > 1.0f) ? 1 : (uint32_t)fmaxf(fminf(parts + 0.5f, most), 1.0f);
 }

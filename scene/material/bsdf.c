@@ -121,7 +121,16 @@ static float rough_flux_factor(const bsdf *b, const bsdf_lobe_type *type, vec3 d
     if (!is_fibre)
         return flux_correction(b, direction);
     float met = fabsf(vec3_dot(b->out, b->geometric_normal));
-    return met > 0.0f ? fminf(fabsf(vec3_dot(direction, b->geometric_normal)) / met, BSDF_SHADING_NORMAL_MAX) : 0.0f;
+    return met > 0.0f ? fminf(fabsf(vec3_dot(direction, b->geometric_normal)) / met, BSDF_FIBRE_FLUX_MAX) : 0.0f;
+}
+
+float bsdf_flux_gain(const bsdf *b)
+{
+    static const float LEFT = 0.5f; /* the mean cosine at which flux leaves */
+    if (b->material.kind != MATERIAL_HAIR || b->material.hair.surface == HAIR_FACES_RAYS)
+        return 1.0f;
+    float met = fabsf(vec3_dot(b->out, b->geometric_normal));
+    return fminf(fmaxf(LEFT / fmaxf(met, 1.0f / BSDF_FIBRE_FLUX_MAX), 1.0f), BSDF_FIBRE_FLUX_MAX);
 }
 
 /* base, m: a diffuse lobe, and the material that it is of. */

@@ -25,6 +25,10 @@
  * smaller angles to the surface, and their part beyond the factor is lost. */
 #define BSDF_SHADING_NORMAL_MAX 32.0f
 
+/* The same for fibres on surfaces that do not face rays, met at a grazing angle: little light arrives there, and what
+ * it scatters is as bright as any. Whoever traces photons splits paths by bsdf_flux_gain. */
+#define BSDF_FIBRE_FLUX_MAX 1024.0f
+
 typedef enum bsdf_lobes { BSDF_GATHERED = 1, BSDF_TRACED = 2, BSDF_ALL = 3 } bsdf_lobes;
 
 /* The quantity that is transported: radiance is scaled by the square of the relative index when it enters another
@@ -144,6 +148,10 @@ bool bsdf_sample_direction(const bsdf *b, bsdf_lobes lobes, bsdf_transport trans
 /* Returns the factor of arriving flux, from out, when it is stored: t(in), and |cos to shading normal| / |cos to
  * geometric normal|, so that irradiance is that of the shading surface (Veach 1997, 5.3). */
 float bsdf_arrival_factor(const bsdf *b);
+
+/* About how many times its flux all ways on from the point carry away together, at least 1: much at a fibre's surface
+ * that is met at a grazing angle. */
+float bsdf_flux_gain(const bsdf *b);
 
 /* bsdf_arrival_factor at a point that gathers no light itself, while other points of its surface do, as between the
  * metal grains of a mix or the black texels of a base. An estimate takes photons per area of the whole surface, so they

@@ -148,7 +148,7 @@ static void expect_same_both_ways(const char *of)
                 continue;
             float met = fabsf(vec3_dot(b, of_photon.geometric_normal)),
                   left = fabsf(vec3_dot(a, of_eye.geometric_normal));
-            if (met < 0.1f || left < 0.1f)
+            if (met < 0.002f || left < 0.002f)
                 continue;
             rgb flux = bsdf_evaluate(&photon, BSDF_ALL, BSDF_FLUX, a),
                 radiance = bsdf_evaluate(&eye, BSDF_ALL, BSDF_RADIANCE, b);
