@@ -179,7 +179,7 @@ static const struct {
 #undef SUM_ROW
 };
 
-static int sum_width(const aov_layout *layout, int sum)
+static int sum_width(const aov_layout *layout, film_sum sum)
 {
     return sum == SUM_GROUPS ? 3 * (layout->group_count + 1) : SUMS[sum].width;
 }
@@ -193,7 +193,7 @@ static void lay_out_sums(aov_layout *layout, aov_needs also)
         sums |= 1u << SUM_ALBEDO | 1u << SUM_NORMAL;
     if (also.variance)
         sums |= 1u << SUM_SQUARES | 1u << SUM_DEVELOPED;
-    for (int i = 0; i < FILM_SUM_COUNT; i++) {
+    for (film_sum i = 0; i < FILM_SUM_COUNT; i++) {
         layout->offset[i] = sums >> i & 1u ? layout->sum_count : -1;
         layout->sum_count += sums >> i & 1u ? sum_width(layout, i) : 0;
     }
@@ -201,7 +201,7 @@ static void lay_out_sums(aov_layout *layout, aov_needs also)
         layout->channels[i].offset += layout->offset[layout->channels[i].sum];
     layout->needs_first_hit =
         layout->needs_nearest || layout->has_matte[CRYPTOMATTE_OBJECT] || layout->has_matte[CRYPTOMATTE_MATERIAL];
-    for (int i = 0; i < FILM_SUM_COUNT; i++)
+    for (film_sum i = 0; i < FILM_SUM_COUNT; i++)
         layout->needs_first_hit = layout->needs_first_hit || (aov_has(layout, i) && SUMS[i].needs_first_hit);
     int of_radiance = sum_width(layout, SUM_RADIANCE);
     if (aov_has(layout, SUM_SQUARES))

@@ -51,7 +51,7 @@ static atomic_u64 open_count;
 
 hash128 texture_cache_key(const char *path, const unsigned char *bytes, size_t size, image_encoding encoding)
 {
-    const int32_t numbers[] = {FORMAT, encoding.curve, (int32_t)sizeof(kept_header), (int32_t)sizeof(size_t)};
+    const int32_t numbers[] = {FORMAT, (int32_t)encoding.curve, (int32_t)sizeof(kept_header), (int32_t)sizeof(size_t)};
     hash128 h = bytes ? hash128_begin() : texture_file_content(path);
     if (bytes)
         hash128_add(&h, bytes, size);
