@@ -50,9 +50,8 @@ static advice advise(const struct ag_rendering *r, ag_noise_source source, const
     case AG_NOISE_INDIRECT:
         if (is_path)
             return (advice){"in indirect light", "--integrator photonmap helps most"};
-        return (advice){"in indirect light", splitting_is_open(&r->settings)
-                                                 ? MORE_SAMPLES
-                                                 : "more gather rays (--gather-samples) help most"};
+        return (advice){"in indirect light",
+                        r->film->splits ? MORE_SAMPLES : "more gather rays (--gather-samples) help most"};
     case AG_NOISE_CAUSTIC:
         if (is_path)
             return (advice){"in caustics", "--integrator photonmap helps most"};

@@ -66,7 +66,8 @@ static transport make_transport(const ag_context *context, const scene *s, const
                    .run = &context->run,
                    .settings = settings,
                    .split = splitting_first(settings),
-                   .ray_bits = sampler_bits(splitting_most(settings).rays),
+                   .ray_bits =
+                       sampler_bits(splitting_most(settings, integrator_of(settings->integrator)->splits_samples).rays),
                    .layout = layout,
                    .wants_layers = layout->needs_layers,
                    .wants_groups = aov_has(layout, SUM_GROUPS),
@@ -140,7 +141,8 @@ ag_status rendering_create_film(ag_rendering *r)
     AG_TRY(pixel_filter_create(&r->s->hints.filter, r->s->hints.disable_pixel_jitter, r->context->log, &filter));
     AG_TRY(aov_layout_create(settings->layers, also, !integrator_of(settings->integrator)->has_photon_map, group_names,
                              group_count, &layout));
-    r->film = film_create(settings, &r->s->space, &filter, &layout);
+    r->film =
+        film_create(settings, &r->s->space, &filter, integrator_of(settings->integrator)->splits_samples, &layout);
     if (!r->film)
         return AG_ERROR_MEMORY;
     AG_TRY(note_origin(r, &r->film->origin));

@@ -90,6 +90,7 @@ set(cut
   "^scene/readers/gltf/.*->scene/readers/(pbrt|model)/"
   "^scene/readers/model/.*->scene/readers/(pbrt|gltf)/"
   "^scene/readers/pbrt/.*->scene/readers/(gltf/|model/([^p]|p[^l]|pl[^y]|ply_[^f]))"
+  "^renderer/film/.*->renderer/(integrator|output|cli)/"
   "^renderer/integrator/.*->renderer/(output|cli)/"
   "^renderer/output/.*->renderer/cli/"
   "^renderer/cli/.*->threads/([a-rt-z]|s[^t]|st[^a])"

@@ -24,7 +24,7 @@ static size_t sums_of_pixel(const ag_film *film)
     return (size_t)film->layout.sum_count * (film->filter.has_signs ? 2 : 1);
 }
 
-static void set_crop(ag_film *film, const ag_render_settings *settings)
+static void set_crop(ag_film *film, const ag_render_settings *settings, bool splits_samples)
 {
     /* as pbrt: pixels from ceil(x0 width) on; a hair less, so that pixel / width times width is that pixel */
     const double *crop = settings->crop_window;
@@ -40,7 +40,7 @@ static void set_crop(ag_film *film, const ag_render_settings *settings)
     if (film->width < 1 || film->height < 1)
         film->width = film->height = 0;
     film->area = (film_area){film->x0, film->y0, film->width, film->height};
-    if ((settings->noise_level > 0.0f || splitting_goes_on(settings)) && film->width > 0) {
+    if ((settings->noise_level > 0.0f || splitting_goes_on(settings, splits_samples)) && film->width > 0) {
         int x0 = edges[0] / FILM_BLOCK * FILM_BLOCK, y0 = edges[2] / FILM_BLOCK * FILM_BLOCK;
         int x1 = (edges[1] + FILM_BLOCK - 1) / FILM_BLOCK * FILM_BLOCK,
             y1 = (edges[3] + FILM_BLOCK - 1) / FILM_BLOCK * FILM_BLOCK;
@@ -66,14 +66,14 @@ void film_begin_splits(ag_film *film, const ag_render_settings *settings)
 }
 
 ag_film *film_create(const ag_render_settings *settings, const working_space *space, const pixel_filter *filter,
-                     aov_layout *layout)
+                     bool splits_samples, aov_layout *layout)
 {
     ag_film *film = calloc(1, sizeof *film);
     if (!film) {
         aov_layout_reset(layout);
         return NULL;
     }
-    set_crop(film, settings);
+    set_crop(film, settings, splits_samples);
     film->float_samples = settings->float_samples;
     film->filter = *filter;
     film->space = *space;
@@ -104,7 +104,7 @@ ag_film *film_create(const ag_render_settings *settings, const working_space *sp
         film->wanted = calloc(count, sizeof *film->wanted);
         is_whole = is_whole && film->wanted;
     }
-    if (splitting_is_open(settings)) {
+    if (splitting_is_open(settings, splits_samples)) {
         film->splits = calloc(count, sizeof *film->splits);
         is_whole = is_whole && film->splits;
         film_begin_splits(film, settings);

@@ -70,10 +70,10 @@ struct ag_film {
     noise_lattice noise; /* of some of them */
 };
 
-/* An empty film of the settings' crop; takes the layout, on failure too (it is then reset). NULL when out of memory. A
- * crop that holds no pixel has width 0. */
+/* Returns an empty film of the settings' crop; takes the layout, on failure too (it is then reset). NULL when out of
+ * memory. A crop that holds no pixel has width 0. splits_samples: see splitting.h. */
 struct ag_film *film_create(const ag_render_settings *settings, const working_space *space, const pixel_filter *filter,
-                            aov_layout *layout);
+                            bool splits_samples, aov_layout *layout);
 
 static inline size_t film_area_count(const struct ag_film *film)
 {

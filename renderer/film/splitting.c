@@ -37,14 +37,15 @@ static const double PILOT_HALF_WINDOW = 2.0;
  * subtracting the others is not well known. */
 static const double LEAST_REST = 1.0 / 64.0;
 
-bool splitting_is_open(const ag_render_settings *settings)
+bool splitting_is_open(const ag_render_settings *settings, bool splits_samples)
 {
-    return settings->integrator == AG_INTEGRATOR_PHOTONMAP && settings->gather_samples == 0;
+    return splits_samples && settings->gather_samples == 0;
 }
 
-bool splitting_goes_on(const ag_render_settings *settings)
+bool splitting_goes_on(const ag_render_settings *settings, bool splits_samples)
 {
-    return splitting_is_open(settings) && (settings->noise_level > 0.0f || settings->samples_per_pixel > FIRST_BARRIER);
+    return splitting_is_open(settings, splits_samples) &&
+           (settings->noise_level > 0.0f || settings->samples_per_pixel > FIRST_BARRIER);
 }
 
 split_counts splitting_first(const ag_render_settings *settings)
@@ -61,10 +62,10 @@ split_counts splitting_first(const ag_render_settings *settings)
     return (split_counts){.rays = rays > 0 ? rays : FIRST_RAYS_MIN, .lights = FIRST_LIGHTS};
 }
 
-split_counts splitting_most(const ag_render_settings *settings)
+split_counts splitting_most(const ag_render_settings *settings, bool splits_samples)
 {
     split_counts most = splitting_first(settings);
-    if (!splitting_is_open(settings))
+    if (!splitting_is_open(settings, splits_samples))
         return most;
     most.lights = LIGHTS_MAX;
     if (settings->noise_level > 0.0f && most.rays < RAYS_MAX) /* else the first rays bound the time */
@@ -149,7 +150,7 @@ static choice make_choice(const ag_render_settings *settings)
                 1.0,
                 0.0,
                 {.rays = 1, .lights = 1},
-                splitting_most(settings)};
+                splitting_most(settings, true)};
     if (settings->noise_level > 0.0f)
         return c;
     c.factor = FIXED_FACTOR;

@@ -31,15 +31,16 @@ typedef struct split_trial {
     split_counts counts;
 } split_trial;
 
-/* Whether blocks choose: with the photon map's integrator, where no number of gather rays is set. */
-bool splitting_is_open(const ag_render_settings *settings);
-/* Whether they choose again by their own samples: then a film holds all pixels of its blocks. */
-bool splitting_goes_on(const ag_render_settings *settings);
+/* Returns whether blocks choose: where the integrator's samples can be split (splits_samples) and no number of gather
+ * rays is set. */
+bool splitting_is_open(const ag_render_settings *settings, bool splits_samples);
+/* Returns whether blocks choose again by their own samples: then a film holds all pixels of its blocks. */
+bool splitting_goes_on(const ag_render_settings *settings, bool splits_samples);
 /* The counts of every sample where blocks do not choose, and of the first samples where they do. */
 split_counts splitting_first(const ag_render_settings *settings);
 
 /* The most rays of either kind that a sample may have. */
-split_counts splitting_most(const ag_render_settings *settings);
+split_counts splitting_most(const ag_render_settings *settings, bool splits_samples);
 
 void split_trial_add(split_trial *trial, const eye_sample *sample);
 

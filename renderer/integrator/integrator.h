@@ -12,6 +12,8 @@ struct ag_rendering;
 /* Each function may be NULL, which does nothing, but for sample. */
 typedef struct integrator {
     bool has_photon_map;  /* it traces photons: their settings, layers and statistics mean something */
+    bool splits_samples;  /* its samples tell cost and variance of their gather rays and light samples, so that each
+                             block of the picture can choose how many there are (film/splitting.h) */
     float direct_guiding; /* the default of that setting */
 
     /* Called once, before all tiles: makes what they read, in the rendering, and refers to it in its transport. Errors:

@@ -41,6 +41,7 @@ static bool reserve(const transport *t, eye_worker *worker)
 }
 
 const integrator photon_map_integrator = {.has_photon_map = true,
+                                          .splits_samples = true,
                                           .direct_guiding = AG_DEFAULT_DIRECT_GUIDING,
                                           .prepare = prepare,
                                           .reserve = reserve,

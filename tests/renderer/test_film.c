@@ -118,7 +118,7 @@ static ag_film *film_of(uint32_t layers, bool has_signs)
     assert_int_equal(aov_layout_create(layers, (aov_needs){.albedo_and_normal = false}, false, groups, 1, &layout),
                      AG_OK);
     working_space space = working_space_rec709();
-    ag_film *film = film_create(&settings, &space, &filter, &layout);
+    ag_film *film = film_create(&settings, &space, &filter, true, &layout);
     assert_non_null(film);
     return film;
 }

@@ -12,7 +12,7 @@ static ag_film *film_of(int width, uint32_t layers)
     aov_layout layout;
     assert_int_equal(aov_layout_create(layers, (aov_needs){0}, false, groups, 1, &layout), AG_OK);
     working_space space = working_space_rec709();
-    ag_film *film = film_create(&settings, &space, &filter, &layout);
+    ag_film *film = film_create(&settings, &space, &filter, true, &layout);
     assert_non_null(film);
     return film;
 }

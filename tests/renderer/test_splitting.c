@@ -17,7 +17,7 @@ static ag_film *create_film(const ag_render_settings *settings)
     aov_layout layout;
     assert_int_equal(aov_layout_create(0, (aov_needs){.albedo_and_normal = false}, false, groups, 1, &layout), AG_OK);
     working_space space = working_space_rec709();
-    ag_film *film = film_create(settings, &space, &filter, &layout);
+    ag_film *film = film_create(settings, &space, &filter, true, &layout);
     assert_non_null(film);
     return film;
 }
@@ -141,14 +141,14 @@ static void test_given_number(void **state)
     ag_render_settings settings = settings_of(0.0f, 16);
     settings.gather_samples = 20;
     ag_film *film = create_film(&settings);
-    assert_false(splitting_is_open(&settings));
+    assert_false(splitting_is_open(&settings, true));
     assert_null(film->splits);
     split_counts counts = splitting_first(&settings);
     assert_true(counts.rays == 20 && counts.lights == 3);
     ag_film_destroy(film);
     settings.gather_samples = 0;
-    settings.integrator = AG_INTEGRATOR_PATH;
-    assert_false(splitting_is_open(&settings));
+    assert_true(splitting_is_open(&settings, true));
+    assert_false(splitting_is_open(&settings, false));
 }
 
 /* A sample of mean 2, skewed: 1 / share with probability share, and as much in the mean by gather rays. */
