@@ -174,9 +174,11 @@ static const struct {
     int width;
     bool needs_first_hit;
 } SUMS[FILM_SUM_COUNT] = {
-#define SUM_ROW(sum, width, needs_first_hit) [sum] = {width, needs_first_hit},
-    FILM_SUM_LIST(SUM_ROW)
+#define SUM_ROW(sum, width, needs_first_hit)     [sum] = {width, needs_first_hit},
+#define SUM_OF_HIT(sum, member, needs_first_hit) [sum] = {FIRST_HIT_WIDTH(member), needs_first_hit},
+    FILM_SUM_LIST(SUM_ROW, SUM_OF_HIT)
 #undef SUM_ROW
+#undef SUM_OF_HIT
 };
 
 static int sum_width(const aov_layout *layout, film_sum sum)
@@ -216,7 +218,6 @@ ag_status aov_layout_create(uint32_t layers, aov_needs also, bool is_path, const
     for (size_t i = 0; layer_at(i); i++)
         if (is_path && layer_at(i)->is_of_photon_map)
             layout.layers &= ~(uint32_t)layer_at(i)->info.layer;
-    layout.is_gbuffer = layout.layers & AG_LAYER_GBUFFER;
     channel_list list = {0};
     list_channels(&list, &layout);
     list = (channel_list){.capacity = list.count, .channels = calloc((size_t)list.count, sizeof *list.channels)};

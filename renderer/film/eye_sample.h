@@ -27,7 +27,7 @@ typedef struct first_hit {
     float depth;                             /* along the camera's axis; of spherical cameras the distance */
     vec3 position, normal, geometric_normal; /* the normals on the eye's side */
     vec2 uv;
-    float dz_dx, dz_dy; /* of the surface's plane, from pixel to pixel */
+    vec2 slope; /* dz/dx, dz/dy of the surface's plane, from pixel to pixel */
     rgb albedo;
     rgb irradiance;                  /* W/m^2, of the photon map's estimate there */
     uint32_t object_id, material_id; /* from 1 on; 0: nothing */

@@ -3,6 +3,7 @@
 
 #include "film/film_tiles.h"
 
+#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -212,7 +213,28 @@ static void add_rgb(double *sums, rgb value)
     sums[2] += (double)value.b;
 }
 
-static void add_vec3(double *sums, vec3 value) { add_rgb(sums, (rgb){value.x, value.y, value.z}); }
+/* Where the members of first_hit lie that are summed; the width of all other sums is 0 here. */
+static const struct {
+    size_t offset;
+    int width;
+} OF_HIT[FILM_SUM_COUNT] = {
+#define SUM_ROW(sum, width, needs_first_hit)
+#define SUM_OF_HIT(sum, member, needs_first_hit) [sum] = {offsetof(first_hit, member), FIRST_HIT_WIDTH(member)},
+    FILM_SUM_LIST(SUM_ROW, SUM_OF_HIT)
+#undef SUM_ROW
+#undef SUM_OF_HIT
+};
+
+static void add_first_hit(const aov_layout *layout, double *sums, const first_hit *first)
+{
+    for (film_sum sum = 0; sum < FILM_SUM_COUNT; sum++) {
+        if (!aov_has(layout, sum))
+            continue;
+        const float *values = (const float *)(const void *)((const char *)first + OF_HIT[sum].offset);
+        for (int i = 0; i < OF_HIT[sum].width; i++)
+            sums[layout->offset[sum] + i] += (double)values[i];
+    }
+}
 
 /* A sample as the film develops it, and its square. */
 static void add_squares(const ag_film *film, double *squares, double *developed, rgb radiance)
@@ -241,24 +263,7 @@ static void add_layers(ag_film *film, size_t pixel, double *sums, const eye_samp
 
     if (aov_has(layout, SUM_ALPHA))
         sums[offset[SUM_ALPHA]] += 1.0;
-    if (aov_has(layout, SUM_ALBEDO))
-        add_rgb(sums + offset[SUM_ALBEDO], first->albedo);
-    if (aov_has(layout, SUM_NORMAL))
-        add_vec3(sums + offset[SUM_NORMAL], first->normal);
-    if (aov_has(layout, SUM_GEOMETRIC_NORMAL))
-        add_vec3(sums + offset[SUM_GEOMETRIC_NORMAL], first->geometric_normal);
-    if (aov_has(layout, SUM_POSITION))
-        add_vec3(sums + offset[SUM_POSITION], first->position);
-    if (aov_has(layout, SUM_UV)) {
-        sums[offset[SUM_UV]] += (double)first->uv.x;
-        sums[offset[SUM_UV] + 1] += (double)first->uv.y;
-    }
-    if (aov_has(layout, SUM_SLOPE)) {
-        sums[offset[SUM_SLOPE]] += (double)first->dz_dx;
-        sums[offset[SUM_SLOPE] + 1] += (double)first->dz_dy;
-    }
-    if (aov_has(layout, SUM_IRRADIANCE))
-        add_rgb(sums + offset[SUM_IRRADIANCE], first->irradiance);
+    add_first_hit(layout, sums, first);
     if (aov_has(layout, SUM_HIT_SQUARES))
         add_squares(film, sums + offset[SUM_HIT_SQUARES], sums + offset[SUM_HIT_DEVELOPED], sample->radiance);
     const uint32_t ids[CRYPTOMATTE_KIND_COUNT] = {first->object_id, first->material_id};

@@ -75,10 +75,10 @@ void first_hit_project(const transport *t, const film_point *from, first_hit *in
     vec3 in_camera = transform_point(&camera_from_world, in_out->position);
     if (c->kind == CAMERA_PERSPECTIVE || c->kind == CAMERA_ORTHOGRAPHIC)
         in_out->depth = in_camera.z;
-    if (!t->layout->is_gbuffer)
+    if (!aov_has(t->layout, SUM_SLOPE))
         return;
-    in_out->dz_dx = slope(t, &camera_from_world, in_out, from, 1.0f / (float)t->settings->width, 0.0f);
-    in_out->dz_dy = slope(t, &camera_from_world, in_out, from, 0.0f, 1.0f / (float)t->settings->height);
+    in_out->slope.x = slope(t, &camera_from_world, in_out, from, 1.0f / (float)t->settings->width, 0.0f);
+    in_out->slope.y = slope(t, &camera_from_world, in_out, from, 0.0f, 1.0f / (float)t->settings->height);
     if (!t->settings->layers_in_camera_space)
         return;
     in_out->position = in_camera;
