@@ -4,7 +4,7 @@
 const integrator *integrator_of(ag_integrator kind)
 {
     static const integrator *const INTEGRATORS[] = {
-#define INTEGRATOR_ROW(kind, word, integrator_of_kind) [kind] = &(integrator_of_kind),
+#define INTEGRATOR_ROW(kind, word, integrator_of_kind, about) [kind] = &(integrator_of_kind),
         INTEGRATOR_LIST(INTEGRATOR_ROW)
 #undef INTEGRATOR_ROW
     };

@@ -36,13 +36,13 @@ typedef struct integrator {
     void (*complete)(const transport *t, eye_worker *worker);
 } integrator;
 
-/* Every kind, with its word as a setting and its integrator, which is in a file of its own; in the order of the kinds.
- */
+/* Every kind, in the order of the kinds: its word as a setting; its integrator, which is in a file of its own; and what
+ * it is, for help and man page. */
 #define INTEGRATOR_LIST(X)                                                                                             \
-    X(AG_INTEGRATOR_PHOTONMAP, "photonmap", photon_map_integrator)                                                     \
-    X(AG_INTEGRATOR_PATH, "path", path_integrator)
+    X(AG_INTEGRATOR_PHOTONMAP, "photonmap", photon_map_integrator, "a photon map, seen by final gathering")            \
+    X(AG_INTEGRATOR_PATH, "path", path_integrator, "plain path tracing of the same scene")
 
-#define INTEGRATOR_DECLARATION(kind, word, integrator_of_kind) extern const integrator integrator_of_kind;
+#define INTEGRATOR_DECLARATION(kind, word, integrator_of_kind, about) extern const integrator integrator_of_kind;
 INTEGRATOR_LIST(INTEGRATOR_DECLARATION)
 #undef INTEGRATOR_DECLARATION
 

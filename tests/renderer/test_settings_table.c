@@ -52,6 +52,9 @@ static void names_are_there_once(void **state)
             assert_non_null(a->text.help);
             assert_non_null(a->text.section);
             assert_true((a->text.argument == NULL) == (a->kind == SETTING_FLAG));
+            for (int word = 0; a->kind == SETTING_WORD && a->words[word]; word++)
+                if (!strstr(a->text.help, a->words[word]) || !strstr(a->text.manual, a->words[word]))
+                    fail_msg("%s: \"%s\" is not in its help or its manual", a->text.name, a->words[word]);
         }
         assert_true(a->json || a->kind == SETTING_FILE);
         assert_true(a->json || !(a->marks & SETTING_IN_HEADER));
