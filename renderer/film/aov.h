@@ -77,7 +77,7 @@ typedef struct film_channel {
 } film_channel;
 
 typedef struct aov_layout {
-    uint32_t layers; /* AG_LAYER_... */
+    uint32_t layers;            /* AG_LAYER_... */
     int offset[FILM_SUM_COUNT]; /* -1: not summed */
     int sum_count;              /* channels that are summed */
     int group_count;
