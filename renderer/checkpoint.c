@@ -202,6 +202,8 @@ ag_status ag_rendering_read_checkpoint(ag_rendering *r, const char *path)
 
 ag_sample_counts ag_rendering_sample_counts(const ag_rendering *r)
 {
+    if (!r)
+        return (ag_sample_counts){0};
     film_count count = film_count_samples(r->film);
     return (ag_sample_counts){(int)count.least, (int)count.most, count.mean};
 }

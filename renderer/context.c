@@ -56,8 +56,11 @@ ag_status ag_context_create(const ag_context_settings *settings, ag_context **ou
     bool is_known = false;
     for (size_t i = 0; i < sizeof known_isas / sizeof *known_isas; i++)
         is_known = is_known || strcmp(isa, known_isas[i]) == 0;
-    if (!out_context || !is_known)
+    if (!out_context || !is_known || (settings->confined_count > 0 && !settings->confined_to))
         return AG_ERROR_ARGUMENT;
+    for (size_t i = 0; i < settings->confined_count; i++)
+        if (!settings->confined_to[i])
+            return AG_ERROR_ARGUMENT;
     ag_context *c = calloc(1, sizeof *c);
     if (!c)
         return AG_ERROR_MEMORY;
@@ -86,10 +89,8 @@ ag_status ag_context_create(const ag_context_settings *settings, ag_context **ou
     return AG_OK;
 }
 
-void ag_context_destroy(ag_context *context)
+static void free_context(ag_context *context)
 {
-    if (!context)
-        return;
     run_context_reset(&context->run);
     thread_pool_destroy(context->pool);
     log_destroy(context->log);
@@ -103,13 +104,60 @@ void ag_context_destroy(ag_context *context)
     free(context);
 }
 
-unsigned ag_context_thread_count(const ag_context *context) { return thread_pool_worker_count(context->pool); }
+void ag_context_destroy(ag_context *context)
+{
+    if (!context || context->is_dropped)
+        return;
+    if (context->scene_count == 0) {
+        free_context(context);
+        return;
+    }
+    log_message(context->log, AG_LOG_ERROR, "ag_context_destroy: %zu of its scenes have not been destroyed before it",
+                context->scene_count);
+    log_silence(context->log); /* what `user` points to may be gone from now on */
+    context->run.progress = NULL;
+    run_cancel(&context->run);
+    context->is_dropped = true;
+}
 
-void ag_context_cancel(ag_context *context) { run_cancel(&context->run); }
+static bool is_same_text(const char *a, const char *b) { return a && b ? strcmp(a, b) == 0 : a == b; }
 
-void ag_context_clear_cancel(ag_context *context) { run_clear_cancel(&context->run); }
+bool context_is_alike(const ag_context *a, const ag_context *b)
+{
+    return a == b || (strcmp(a->isa, b->isa) == 0 && is_same_text(a->color_config_path, b->color_config_path) &&
+                      is_same_text(a->working_space_name, b->working_space_name));
+}
 
-void ag_context_pause(ag_context *context) { run_pause(&context->run); }
+void context_add_scene(ag_context *context) { context->scene_count++; }
+
+void context_remove_scene(ag_context *context)
+{
+    if (--context->scene_count == 0 && context->is_dropped)
+        free_context(context);
+}
+
+unsigned ag_context_thread_count(const ag_context *context)
+{
+    return context ? thread_pool_worker_count(context->pool) : 0;
+}
+
+void ag_context_cancel(ag_context *context)
+{
+    if (context)
+        run_cancel(&context->run);
+}
+
+void ag_context_clear_cancel(ag_context *context)
+{
+    if (context && !context->is_dropped)
+        run_clear_cancel(&context->run);
+}
+
+void ag_context_pause(ag_context *context)
+{
+    if (context)
+        run_pause(&context->run);
+}
 
 double context_add_to_phase(ag_context *context, ag_phase phase, phase_begin begin)
 {
@@ -128,6 +176,8 @@ void context_end_phase(ag_context *context, ag_phase phase, phase_begin begin)
 ag_status ag_denoise_check(ag_context *context)
 {
     char message[1024];
+    if (!context)
+        return AG_ERROR_ARGUMENT;
     ag_status status = denoise_check(message, sizeof message);
     if (status != AG_OK)
         log_message(context->log, AG_LOG_ERROR, "%s", message);
@@ -165,13 +215,22 @@ ag_status ag_film_denoise(ag_context *context, ag_film *film)
 
 void ag_film_chromaticities(const ag_film *film, float out_chromaticities[8])
 {
-    working_space_chromaticities(&film->space, out_chromaticities);
+    if (film && out_chromaticities)
+        working_space_chromaticities(&film->space, out_chromaticities);
 }
 
-void ag_context_note_end(ag_context *context, ag_end end) { context->statistics.end = end; }
+void ag_context_note_end(ag_context *context, ag_end end)
+{
+    if (context)
+        context->statistics.end = end;
+}
 
 void ag_context_statistics_fill(const ag_context *context, void *out_statistics, size_t struct_size)
 {
+    if (!context) {
+        public_struct_write_part(NULL, 0, out_statistics, struct_size);
+        return;
+    }
     ag_statistics s = context->statistics;
     s.time_total_s = clock_seconds() - context->created_at;
     s.cpu_s = clock_process_cpu_seconds();
@@ -181,7 +240,8 @@ void ag_context_statistics_fill(const ag_context *context, void *out_statistics,
 
 void ag_context_prediction_fill(const ag_context *context, void *out_prediction, size_t struct_size)
 {
-    public_struct_write_part(&context->prediction, sizeof context->prediction, out_prediction, struct_size);
+    public_struct_write_part(context ? &context->prediction : NULL, context ? sizeof context->prediction : 0,
+                             out_prediction, struct_size);
 }
 
 void context_count_textures(ag_context *context, const scene *s)

@@ -28,6 +28,8 @@ struct ag_context {
     size_t confined_count;
     char *color_summary;           /* of ag_color_summary, or NULL */
     struct last_frame *last_frame; /* of fixed photon paths; NULL: there is none */
+    size_t scene_count;            /* those made with it that have not been freed */
+    bool is_dropped;               /* it goes with the last of them */
     char *color_views;             /* of ag_color_view_at, as color_config_list_views has them, or NULL */
 };
 
@@ -42,7 +44,18 @@ struct ag_scene {
     bool is_dropped;          /* it goes with the last of them */
 };
 
-/* Whether a scene can be rendered; says in the log why not. Errors: AG_ERROR_ARGUMENT. (making/scene_memory.c) */
+/* Whether two contexts have the same instruction set, colour config and working space: a scene of the one renders alike
+ * with the other. */
+bool context_is_alike(const ag_context *a, const ag_context *b);
+
+/* A scene of the context's has been made; it has been freed, and a context that was destroyed before goes with the
+ * last.
+ */
+void context_add_scene(ag_context *context);
+void context_remove_scene(ag_context *context);
+
+/* Whether a scene can be rendered with a context; says in the log why not. Errors: AG_ERROR_ARGUMENT.
+ * (making/scene_memory.c) */
 ag_status scene_check_complete(ag_context *context, const ag_scene *made);
 
 /* When a phase began. */

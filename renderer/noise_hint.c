@@ -86,6 +86,6 @@ static ag_noise noise_of(const ag_rendering *r)
 
 void ag_rendering_noise_fill(const ag_rendering *r, void *out_noise, size_t struct_size)
 {
-    const ag_noise noise = noise_of(r);
+    const ag_noise noise = r ? noise_of(r) : (ag_noise){.level = -1.0};
     public_struct_write_part(&noise, sizeof noise, out_noise, struct_size);
 }

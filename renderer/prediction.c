@@ -79,7 +79,11 @@ static ag_status measure_pixel(ag_context *context, const scene *s, const ag_ren
     return status;
 }
 
-void ag_context_expect_host_memory(ag_context *context, uint64_t bytes) { context->host_bytes = bytes; }
+void ag_context_expect_host_memory(ag_context *context, uint64_t bytes)
+{
+    if (context)
+        context->host_bytes = bytes;
+}
 
 static ag_status predict_memory(ag_context *context, const scene *s, const ag_render_settings *settings,
                                 ag_prediction *out, int *out_channel_count)

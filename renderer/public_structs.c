@@ -59,10 +59,13 @@ void public_struct_write(const void *filled, size_t filled_size, void *out_struc
 
 void public_struct_write_part(const void *made, size_t made_size, void *out_struct, size_t struct_size)
 {
+    if (!out_struct)
+        return;
     memset(out_struct, 0, struct_size);
     if (struct_size < sizeof struct_size)
         return;
-    memcpy(out_struct, made, made_size < struct_size ? made_size : struct_size);
+    if (made_size > 0)
+        memcpy(out_struct, made, made_size < struct_size ? made_size : struct_size);
     memcpy(out_struct, &struct_size, sizeof struct_size);
 }
 
@@ -71,6 +74,8 @@ size_t ag_struct_size(ag_struct which) { return known_of(which).size; }
 void ag_struct_fill(ag_struct which, void *out_struct, size_t struct_size)
 {
     const known_struct known = known_of(which);
+    if (!out_struct)
+        return;
     if (which == AG_STRUCT_RENDER_SETTINGS) {
         const ag_render_settings settings = settings_table_defaults();
         public_struct_write(&settings, sizeof settings, out_struct, struct_size);

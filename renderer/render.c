@@ -408,7 +408,7 @@ ag_status ag_rendering_write_photons(const ag_rendering *r, const char *path)
     return status;
 }
 
-const ag_film *ag_rendering_film(const ag_rendering *r) { return r->film; }
+const ag_film *ag_rendering_film(const ag_rendering *r) { return r ? r->film : NULL; }
 
 void ag_rendering_finish(ag_rendering *r, ag_film **out_film)
 {
@@ -442,9 +442,9 @@ void ag_rendering_finish(ag_rendering *r, ag_film **out_film)
     free(r->whole);
     ag_scene *loaded = r->loaded;
     free(r);
-    if (--loaded->rendering_count == 0 && loaded->is_dropped)
-        ag_scene_destroy(loaded);
     context_add_to_phase(context, AG_PHASE_RENDER, begin);
+    if (--loaded->rendering_count == 0 && loaded->is_dropped)
+        ag_scene_destroy(loaded); /* and the context with it, where that was destroyed before */
 }
 
 ag_status ag_render(ag_context *context, const ag_scene *loaded, const ag_render_settings *settings, ag_film **out_film)

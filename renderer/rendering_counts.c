@@ -50,8 +50,8 @@ void rendering_count_irradiance(ag_statistics *statistics, maps *m, bool finds_d
 
 void ag_rendering_statistics_fill(const ag_rendering *r, void *out_statistics, size_t struct_size)
 {
-    ag_statistics statistics = ag_context_statistics(r->context);
-    if (r->maps)
+    ag_statistics statistics = ag_context_statistics(r ? r->context : NULL);
+    if (r && r->maps)
         rendering_count_irradiance(&statistics, r->maps, false);
     public_struct_write_part(&statistics, sizeof statistics, out_statistics, struct_size);
 }
@@ -59,7 +59,7 @@ void ag_rendering_statistics_fill(const ag_rendering *r, void *out_statistics, s
 void ag_rendering_growth_fill(const ag_rendering *r, void *out_growth, size_t struct_size)
 {
     ag_growth growth = {0};
-    if (r->maps && r->t.cache) {
+    if (r && r->maps && r->t.cache) {
         const photon_map *map = &r->maps->global;
         irradiance_cache_look(&r->maps->cache, &growth.irradiance_requests, &growth.irradiance_computed);
         growth.irradiance_photons = map->irradiance_photons.count;

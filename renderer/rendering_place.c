@@ -20,6 +20,8 @@ static bool is_plain(const camera *c)
 void ag_rendering_find_place(const ag_rendering *r, float out_from[3], float out_to[3], float out_up[3],
                              float out_right[3], float *out_fov_degrees)
 {
+    if (!r || !out_from || !out_to || !out_up || !out_right || !out_fov_degrees)
+        return;
     const scene *s = r->s;
     const camera *c = &s->camera;
     const transform at = c->is_moving ? camera_transform_at(c, 0.0f) : c->world_from_camera;

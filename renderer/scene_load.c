@@ -216,6 +216,7 @@ static ag_status load_from(ag_context *context, const scene_source *from, const 
         status = loaded && s ? load(context, from, &d, &request, s, &loaded->inputs) : AG_ERROR_MEMORY;
     if (status == AG_OK) {
         loaded->context = context;
+        context_add_scene(context);
         loaded->s = s;
         *out_scene = loaded;
     } else {
@@ -252,10 +253,12 @@ void ag_scene_destroy(ag_scene *scene_to_destroy)
     scene_to_destroy->is_dropped = true;
     if (scene_to_destroy->rendering_count > 0)
         return; /* the last of them does it */
+    ag_context *context = scene_to_destroy->context;
     scene_making_destroy(scene_to_destroy->making);
     scene_destroy(scene_to_destroy->s);
     input_files_reset(&scene_to_destroy->inputs);
     free(scene_to_destroy);
+    context_remove_scene(context);
 }
 
 const char *ag_scene_film_file_name(const ag_scene *loaded)
@@ -266,6 +269,6 @@ const char *ag_scene_film_file_name(const ag_scene *loaded)
 bool ag_scene_was_read_from(const ag_scene *loaded, const char *path)
 {
     struct stat status;
-    return stat(path, &status) == 0 && S_ISREG(status.st_mode) &&
+    return loaded && path && stat(path, &status) == 0 && S_ISREG(status.st_mode) &&
            input_files_has(&loaded->inputs, (uint64_t)status.st_dev, (uint64_t)status.st_ino);
 }

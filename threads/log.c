@@ -40,6 +40,8 @@ void log_destroy(log_sink *log)
     free(log);
 }
 
+void log_silence(log_sink *log) { log->fn = NULL; }
+
 static bool is_silent(const log_sink *log) { return !log || !log->fn; }
 
 static void speak(log_sink *log, ag_log_level level, char *message, size_t length)

@@ -12,6 +12,8 @@ typedef struct log_sink log_sink;
 /* fn NULL: messages are dropped. Returns NULL when out of memory. */
 log_sink *log_create(ag_log_fn *fn, void *user);
 void log_destroy(log_sink *log); /* NULL is fine */
+/* From now on messages are dropped. Not while other threads may log. */
+void log_silence(log_sink *log);
 
 /* log NULL is fine: the message is dropped. Line ends at the end are cut. fn must not log to the same sink. */
 void log_message(log_sink *log, ag_log_level level, const char *format, ...) AG_PRINTF(3, 4);

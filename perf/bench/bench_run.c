@@ -10,6 +10,7 @@
 typedef struct measuring {
     bench_run *run;
     const bench_work *work;
+    ag_context *loader; /* of the scenes: pinned nowhere, so that neither are threads of the libraries' */
     ag_context *contexts[BENCH_LEVELS_MAX];
     bench_stage stages[BENCH_SCENE_COUNT];
     bench_counters counters;
@@ -51,17 +52,14 @@ static ag_status create_context(unsigned threads, ag_log_fn *log, ag_context **o
     return ag_context_create(&settings, out_context);
 }
 
-/* Scenes are loaded by a context that is pinned nowhere, so that neither are threads of the libraries'. */
 static ag_status load_stages(measuring *m, ag_log_fn *log)
 {
-    ag_context *loader;
-    ag_status status = create_context(m->run->machine.entitled, log, &loader);
+    ag_status status = create_context(m->run->machine.entitled, log, &m->loader);
     if (status != AG_OK)
         return status;
     for (int i = 0; i < BENCH_SCENE_COUNT && status == AG_OK; i++)
-        status = bench_stage_create((bench_scene)i, m->work, loader, &m->stages[i]);
-    snprintf(m->run->isa, sizeof m->run->isa, "%s", loader->isa);
-    ag_context_destroy(loader);
+        status = bench_stage_create((bench_scene)i, m->work, m->loader, &m->stages[i]);
+    snprintf(m->run->isa, sizeof m->run->isa, "%s", m->loader->isa);
     return status;
 }
 
@@ -204,6 +202,7 @@ ag_status bench_run_measure(bench_machine *machine, bench_size size, const unsig
         ag_context_destroy(m.contexts[i]);
     for (int i = 0; i < BENCH_SCENE_COUNT; i++)
         bench_stage_reset(&m.stages[i]);
+    ag_context_destroy(m.loader);
     bench_counters_close(&m.counters);
     out_run->seconds = clock_seconds() - begin;
     return status;

@@ -461,16 +461,18 @@ void film_read_sum(const ag_film *film, film_sum sum, float *out)
 
 const float *ag_film_pixels(const ag_film *film, int *out_width, int *out_height)
 {
-    *out_width = film->width;
-    *out_height = film->height;
-    return film->pixels;
+    if (out_width)
+        *out_width = film ? film->width : 0;
+    if (out_height)
+        *out_height = film ? film->height : 0;
+    return film ? film->pixels : NULL;
 }
 
-int ag_film_channel_count(const ag_film *film) { return film->layout.channel_count; }
+int ag_film_channel_count(const ag_film *film) { return film ? film->layout.channel_count : 0; }
 
 const char *ag_film_channel_name(const ag_film *film, int channel)
 {
-    return channel >= 0 && channel < film->layout.channel_count ? film->layout.channels[channel].name : NULL;
+    return film && channel >= 0 && channel < film->layout.channel_count ? film->layout.channels[channel].name : NULL;
 }
 
 bool ag_film_matte_name(const ag_film *film, ag_layer layer, float id, char *out_name, size_t size)

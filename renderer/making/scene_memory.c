@@ -47,7 +47,8 @@ void scene_making_destroy(scene_making *making)
 
 ag_status scene_check_complete(ag_context *context, const ag_scene *made)
 {
-    const char *wrong = !made->s                                  ? "is not complete: ag_scene_commit comes first"
+    const char *wrong = !context_is_alike(context, made->context) ? "was made with a context of other settings"
+                        : !made->s                                ? "is not complete: ag_scene_commit comes first"
                         : made->making && made->making->is_edited ? "was changed: ag_scene_commit comes first"
                                                                   : NULL;
     if (wrong)
@@ -85,6 +86,7 @@ static ag_status begin_meshes(scene_making *making)
 static ag_status begin(ag_context *context, const ag_scene_settings *settings, ag_scene *made)
 {
     made->context = context;
+    context_add_scene(context);
     scene_making *making = made->making = calloc(1, sizeof *making);
     if (!making)
         return AG_ERROR_MEMORY;

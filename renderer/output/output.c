@@ -52,7 +52,7 @@ ag_status ag_output_check(ag_context *context, const ag_output_settings *setting
         return AG_ERROR_ARGUMENT;
     if (!settings)
         settings = &defaults;
-    AG_TRY(context_check_struct(context, "ag_output_settings", settings->struct_size, sizeof *settings));
+    AG_TRY(output_settings_check(context, settings));
     const image_format *format;
     AG_TRY(find_format(context, settings, path, &format));
     char message[MESSAGE_SIZE];
@@ -192,7 +192,7 @@ ag_status ag_film_write(ag_context *context, const ag_film *film, const ag_outpu
         return AG_ERROR_ARGUMENT;
     if (!settings)
         settings = &defaults;
-    AG_TRY(context_check_struct(context, "ag_output_settings", settings->struct_size, sizeof *settings));
+    AG_TRY(output_settings_check(context, settings));
     if (run_is_cancelled(&context->run))
         return AG_CANCELLED;
     phase_begin begin = context_begin_phase();

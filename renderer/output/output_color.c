@@ -6,6 +6,7 @@
 #include "parallel_for.h"
 #include "status.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -90,6 +91,18 @@ struct ag_view {
     color_processor *processor; /* owned */
 };
 
+ag_status output_settings_check(ag_context *context, const ag_output_settings *settings)
+{
+    AG_TRY(context_check_struct(context, "ag_output_settings", settings->struct_size, sizeof *settings));
+    const char *wrong = (int)settings->type < AG_SAMPLE_DEFAULT || settings->type > AG_SAMPLE_FLOAT
+                            ? "type is no ag_sample_type"
+                        : !isfinite(settings->exposure_stops) ? "exposure_stops is not finite"
+                                                              : NULL;
+    if (wrong)
+        log_message(context->log, AG_LOG_ERROR, "ag_output_settings: %s", wrong);
+    return wrong ? AG_ERROR_ARGUMENT : AG_OK;
+}
+
 /* NULL where values stay as they are. */
 static ag_status create_processor(ag_context *context, const ag_output_settings *settings, bool scene_linear,
                                   color_processor **out_processor)
@@ -129,7 +142,7 @@ ag_status ag_view_create(ag_context *context, const ag_output_settings *settings
     *out_view = NULL;
     if (!settings)
         settings = &defaults;
-    AG_TRY(context_check_struct(context, "ag_output_settings", settings->struct_size, sizeof *settings));
+    AG_TRY(output_settings_check(context, settings));
     AG_TRY(create_processor(context, settings, false, &processor));
     ag_view *view = calloc(1, sizeof *view);
     if (!view) {

@@ -6,6 +6,9 @@
 
 #include "context.h"
 
+/* Whether the settings have the library's size, and values in range; said in the log. Errors: AG_ERROR_ARGUMENT. */
+ag_status output_settings_check(ag_context *context, const ag_output_settings *settings);
+
 /* Whether the settings name what the config has; said in the log. The default view, which takes 10 ms to make, is asked
  * for only where the file is not scene_linear. Errors: AG_ERROR_COLOR, AG_ERROR_MEMORY. */
 ag_status output_color_check(ag_context *context, const ag_output_settings *settings, bool scene_linear);

@@ -184,6 +184,8 @@ ag_status ag_statistics_write(ag_context *context, const char *path)
 
 ag_status ag_statistics_check(ag_context *context, const char *path)
 {
+    if (!context || !path)
+        return AG_ERROR_ARGUMENT;
     char message[1024];
     ag_status status = atomic_file_check(path, message, sizeof message);
     if (status != AG_OK)

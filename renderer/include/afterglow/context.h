@@ -39,7 +39,9 @@ AG_DEFAULT_STRUCT(context_settings, AG_STRUCT_CONTEXT_SETTINGS)
 /* Copies the settings; NULL: the defaults. Errors: AG_ERROR_ARGUMENT (isa is not known; or struct_size is not the
  * library's, where nothing is logged, since the log member may be misplaced), AG_ERROR_MEMORY, AG_ERROR_SYSTEM. */
 AG_API ag_status ag_context_create(const ag_context_settings *settings, ag_context **out_context);
-AG_API void ag_context_destroy(ag_context *context); /* after everything made with it; NULL is fine */
+/* To be called after everything that was made with it has been destroyed; NULL is fine. Where scenes are left, the log
+ * says so, for the last time; the context is then cancelled for good, and freed with the last of its scenes. */
+AG_API void ag_context_destroy(ag_context *context);
 AG_API unsigned ag_context_thread_count(const ag_context *context);
 /* Makes the call under way return AG_CANCELLED within 50 ms, and all later work with this context too, until
  * ag_context_clear_cancel. Safe in a signal handler. */

@@ -11,8 +11,10 @@ extern "C" {
 #endif
 
 /* Traces photons, builds the photon maps and renders. The picture depends on scene, settings and seed alone. The caller
- * owns the film. Errors: AG_ERROR_ARGUMENT (settings out of range), AG_ERROR_SCENE (no camera), AG_ERROR_INPUT (the
- * photon map's file is refused), AG_ERROR_OUTPUT (that file cannot be written), AG_ERROR_MEMORY, AG_CANCELLED. */
+ * owns the film. The scene may have been made with another context whose isa, color_config and working_space are the
+ * same; no other thread uses that meanwhile. Errors: AG_ERROR_ARGUMENT (settings out of range; a scene of a context
+ * with others), AG_ERROR_SCENE (no camera), AG_ERROR_INPUT (the photon map's file is refused), AG_ERROR_OUTPUT (that
+ * file cannot be written), AG_ERROR_MEMORY, AG_CANCELLED. */
 AG_API ag_status ag_render(ag_context *context, const ag_scene *scene, const ag_render_settings *settings,
                            ag_film **out_film);
 
