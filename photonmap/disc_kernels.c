@@ -23,11 +23,11 @@ static uint32_t find_leaves(const photon_query *q, photon_subtree subtree, float
     return count;
 }
 
-static void collect_leaf(photon_query *q, uint32_t leaf, photon_collection *c)
+static void collect_leaf(photon_query *q, uint32_t leaf, photon_found *f)
 {
     const photon_block *b = &q->tree->blocks[leaf];
     _Alignas(16) float d[PHOTON_BLOCK_LANES];
-    uint32_t within = photon_block_within(b, q->position, c->limit, d);
+    uint32_t within = photon_block_within(b, q->position, f->limit, d);
     uint32_t similar =
         q->similar_code == PHOTON_QUERY_NO_CODE ? 0 : within & photon_block_with_normal(b, (uint16_t)q->similar_code);
     for (uint32_t rest = within & ~similar; rest; rest &= rest - 1) {
@@ -35,19 +35,22 @@ static void collect_leaf(photon_query *q, uint32_t leaf, photon_collection *c)
         if (photon_query_has_similar_normal(q, b->normal[lane]))
             similar |= 1u << lane;
         else if (!q->other_is_behind)
-            c->other = d[lane] < c->other ? d[lane] : c->other;
+            f->other = d[lane] < f->other ? d[lane] : f->other;
     }
-    for (; similar; similar &= similar - 1) {
-        uint32_t lane = (uint32_t)__builtin_ctz(similar);
-        c->neighbors[c->count++] = photon_neighbor_make(d[lane], leaf * PHOTON_BLOCK_LANES + lane);
-    }
+    if (!similar)
+        return;
+    float *to = f->distances_squared + (size_t)f->leaf_count * PHOTON_BLOCK_LANES;
+    for (uint32_t lane = 0; lane < PHOTON_BLOCK_LANES; lane++)
+        to[lane] = similar >> lane & 1 ? d[lane] : NAN;
+    f->leaves[f->leaf_count++] = leaf;
+    f->count += (uint32_t)__builtin_popcount(similar);
 }
 
-static uint32_t collect(photon_query *q, const uint32_t *leaves, uint32_t leaf_count, photon_collection *c)
+static uint32_t collect(photon_query *q, const uint32_t *leaves, uint32_t leaf_count, photon_found *f)
 {
     uint32_t i = 0;
-    while (i < leaf_count && c->count + PHOTON_BLOCK_LANES <= c->capacity)
-        collect_leaf(q, leaves[i++], c);
+    while (i < leaf_count && f->leaf_count < f->leaf_capacity && f->count + PHOTON_BLOCK_LANES <= f->capacity)
+        collect_leaf(q, leaves[i++], f);
     return i;
 }
 
@@ -78,28 +81,64 @@ void photon_neighbors_quickselect(photon_neighbor *n, uint32_t count, uint32_t w
     }
 }
 
-/* On a surface the squared distances are spread evenly, so a histogram of them leaves only a few to be compared. */
-static void select_nearest(photon_neighbor *n, uint32_t count, uint32_t wanted, float limit)
+static void count_within(const photon_found *f, const float most[DISC_COUNTS], uint32_t out_counts[DISC_COUNTS])
 {
-    photon_selection s;
-    photon_selection_begin(&s, limit);
-    photon_selection_count(&s, n, 0, count);
-    if (!photon_selection_find_bin(&s, n, count, wanted))
-        return;
-    photon_selection_part(&s, n, 0, count);
-    photon_selection_end(&s, n, wanted);
+    for (int k = 0; k < DISC_COUNTS; k++) {
+        out_counts[k] = 0;
+        for (uint32_t i = 0; i < f->leaf_count * PHOTON_BLOCK_LANES; i++)
+            out_counts[k] += f->distances_squared[i] <= most[k];
+    }
 }
 
-static uint32_t sum_on_level(const photon_disc *disc, photon_neighbor *n, uint32_t count, photon_disc_sums *out_sums,
+static uint32_t list_between(const photon_found *f, float low, float high, photon_neighbor *out_neighbors)
+{
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < f->leaf_count * PHOTON_BLOCK_LANES; i++) {
+        float d = f->distances_squared[i];
+        if (d > low && d <= high)
+            out_neighbors[count++] = photon_neighbor_make(d, photon_found_index(f, i));
+    }
+    return count;
+}
+
+static uint32_t sum_on_level(const photon_disc *disc, const photon_found *f, photon_disc_sums *out_sums,
                              photon_neighbor *out_doubtful)
 {
-    uint32_t kept = 0;
+    uint32_t kept = 0, doubtful = 0;
     *out_sums = (photon_disc_sums){{0}, {0}};
-    photon_disc_part(disc, n, 0, count, &kept, out_sums, out_doubtful);
+    for (uint32_t i = 0; i < f->leaf_count * PHOTON_BLOCK_LANES; i++) {
+        if (!(f->distances_squared[i] <= f->limit))
+            continue;
+        uint32_t index = photon_found_index(f, i);
+        vec3 offset = vec3_sub(photon_block_position(disc->blocks, index), disc->position);
+        if (photon_disc_is_on_level(disc, offset, photon_block_normal(disc->blocks, index))) {
+            photon_disc_add(disc, index, out_sums);
+            kept++;
+        } else {
+            out_doubtful[doubtful++] = i;
+        }
+    }
     return kept;
 }
 
-const disc_kernels disc_kernels_plain = {find_leaves, collect, select_nearest, sum_on_level};
+static uint32_t sum_in_region(const photon_disc *disc, const surface_region *region, const photon_found *f,
+                              photon_disc_sums *out_sums)
+{
+    uint32_t inside = 0;
+    *out_sums = (photon_disc_sums){{0}, {0}};
+    for (uint32_t i = 0; i < f->leaf_count * PHOTON_BLOCK_LANES; i++) {
+        if (!(f->distances_squared[i] <= f->limit))
+            continue;
+        uint32_t index = photon_found_index(f, i);
+        if (surface_region_contains(region, photon_block_position(disc->blocks, index))) {
+            photon_disc_add(disc, index, out_sums);
+            inside++;
+        }
+    }
+    return inside;
+}
+
+const disc_kernels disc_kernels_plain = {find_leaves, collect, count_within, list_between, sum_on_level, sum_in_region};
 
 const disc_kernels *disc_kernels_best(void)
 {

@@ -100,32 +100,6 @@ AVX2 static uint32_t find_leaves(const photon_query *q, photon_subtree subtree, 
     return count;
 }
 
-/* The neighbours of four that have their bits set, in front of `out`, which has room for four; returns how many. */
-AVX2 static inline uint32_t store_some(photon_neighbor *out, __m256i four, uint32_t bits)
-{
-#define LANE(i) 2 * (i), 2 * (i) + 1
-    static const uint8_t IN_FRONT[16][8] = {{0},
-                                            {LANE(0)},
-                                            {LANE(1)},
-                                            {LANE(0), LANE(1)},
-                                            {LANE(2)},
-                                            {LANE(0), LANE(2)},
-                                            {LANE(1), LANE(2)},
-                                            {LANE(0), LANE(1), LANE(2)},
-                                            {LANE(3)},
-                                            {LANE(0), LANE(3)},
-                                            {LANE(1), LANE(3)},
-                                            {LANE(0), LANE(1), LANE(3)},
-                                            {LANE(2), LANE(3)},
-                                            {LANE(0), LANE(2), LANE(3)},
-                                            {LANE(1), LANE(2), LANE(3)},
-                                            {LANE(0), LANE(1), LANE(2), LANE(3)}};
-#undef LANE
-    __m256i lanes = _mm256_cvtepu8_epi32(_mm_loadl_epi64((const __m128i *)(const void *)IN_FRONT[bits]));
-    _mm256_storeu_si256((__m256i *)(void *)out, _mm256_permutevar8x32_epi32(four, lanes));
-    return (uint32_t)__builtin_popcount(bits);
-}
-
 /* Returns, as bits, photon_query_has_similar_normal of a block's photons, and writes the least distance of the other
  * photons that are within the limit and do not face away. */
 AVX2 static inline uint32_t find_similar(const photon_query *q, const photon_block *b, const __m256 d[2], __m256 limit,
@@ -155,23 +129,23 @@ AVX2 static inline uint32_t find_similar(const photon_query *q, const photon_blo
     return similar;
 }
 
-AVX2 static uint32_t collect(photon_query *q, const uint32_t *leaves, uint32_t leaf_count, photon_collection *c)
+AVX2 static uint32_t collect(photon_query *q, const uint32_t *leaves, uint32_t leaf_count, photon_found *f)
 {
-    const __m256i lanes = _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7);
+    const __m256 none = _mm256_set1_ps(NAN), limit = _mm256_set1_ps(f->limit);
+    const __m256i bits = _mm256_setr_epi32(1, 2, 4, 8, 16, 32, 64, 128);
     vec3_8 at = {_mm256_set1_ps(q->position[0]), _mm256_set1_ps(q->position[1]), _mm256_set1_ps(q->position[2])};
-    __m256 limit = _mm256_set1_ps(c->limit);
-    photon_neighbor *end = c->neighbors + c->count, *last = c->neighbors + c->capacity - PHOTON_BLOCK_LANES;
-    uint32_t i = 0;
-    for (; i < leaf_count && end <= last; i++) {
+    uint32_t i = 0, found = f->leaf_count, count = f->count;
+    for (; i < leaf_count && found < f->leaf_capacity && count + PHOTON_BLOCK_LANES <= f->capacity; i++) {
         const photon_block *b = &q->tree->blocks[leaves[i]];
-        __m256 d[2];
+        __m256 d[2], is_within[2];
         uint32_t within = 0;
         for (uint32_t k = 0; k < 2; k++) {
             vec3_8 p = {_mm256_load_ps(&b->position[0][WIDTH * k]), _mm256_load_ps(&b->position[1][WIDTH * k]),
                         _mm256_load_ps(&b->position[2][WIDTH * k])};
             vec3_8 off = sub(p, at);
             d[k] = dot(off, off);
-            within |= (uint32_t)_mm256_movemask_ps(_mm256_cmp_ps(d[k], limit, _CMP_LE_OQ)) << WIDTH * k;
+            is_within[k] = _mm256_cmp_ps(d[k], limit, _CMP_LE_OQ);
+            within |= (uint32_t)_mm256_movemask_ps(is_within[k]) << WIDTH * k;
         }
         if (!within)
             continue;
@@ -179,74 +153,70 @@ AVX2 static uint32_t collect(photon_query *q, const uint32_t *leaves, uint32_t l
                                ? 0
                                : within & photon_block_with_normal(b, (uint16_t)q->similar_code);
         if (within & ~similar) {
-            similar = within & find_similar(q, b, d, limit, &c->other);
-            if (similar)
-                q->similar_code = b->normal[__builtin_ctz(similar)];
+            similar = within & find_similar(q, b, d, limit, &f->other);
+            if (!similar)
+                continue;
+            q->similar_code = b->normal[__builtin_ctz(similar)];
+            for (uint32_t k = 0; similar != within && k < 2; k++) {
+                __m256i its_bit = _mm256_and_si256(_mm256_set1_epi32((int)(similar >> WIDTH * k)), bits);
+                is_within[k] = _mm256_castsi256_ps(_mm256_cmpeq_epi32(its_bit, bits));
+            }
         }
-        __m256i index = _mm256_add_epi32(_mm256_set1_epi32((int)(leaves[i] * PHOTON_BLOCK_LANES)), lanes);
-        for (uint32_t k = 0; k < 2; k++) {
-            /* pairs of index and distance: lanes 0 1 4 5, and 2 3 6 7 */
-            __m256i bits = _mm256_castps_si256(d[k]);
-            __m256i a = _mm256_unpacklo_epi32(index, bits), e = _mm256_unpackhi_epi32(index, bits);
-            end += store_some(end, _mm256_permute2x128_si256(a, e, 0x20), similar >> WIDTH * k & 15);
-            end += store_some(end, _mm256_permute2x128_si256(a, e, 0x31), similar >> (WIDTH * k + 4) & 15);
-            index = _mm256_add_epi32(index, _mm256_set1_epi32(WIDTH));
-        }
+        for (uint32_t k = 0; k < 2; k++)
+            _mm256_store_ps(f->distances_squared + (size_t)found * PHOTON_BLOCK_LANES + WIDTH * k,
+                            _mm256_blendv_ps(none, d[k], is_within[k]));
+        f->leaves[found++] = leaves[i];
+        count += (uint32_t)__builtin_popcount(similar);
     }
-    c->count = (uint32_t)(end - c->neighbors);
+    f->leaf_count = found;
+    f->count = count;
     return i;
 }
 
-/* The squared distances of eight neighbours, but in the order 0 1 4 5 2 3 6 7 of theirs. */
-AVX2 static inline __m256 distances(__m256i low, __m256i high)
+AVX2 static inline uint32_t sum_of_32(__m256i v)
 {
-    return _mm256_shuffle_ps(_mm256_castsi256_ps(low), _mm256_castsi256_ps(high), _MM_SHUFFLE(3, 1, 3, 1));
+    __m128i four = _mm_add_epi32(_mm256_castsi256_si128(v), _mm256_extracti128_si256(v, 1));
+    __m128i two = _mm_add_epi32(four, _mm_unpackhi_epi64(four, four));
+    return (uint32_t)_mm_cvtsi128_si32(_mm_add_epi32(two, _mm_shuffle_epi32(two, 1)));
 }
 
-AVX2 static void select_nearest(photon_neighbor *n, uint32_t count, uint32_t wanted, float limit)
+AVX2 static void count_within(const photon_found *f, const float most[DISC_COUNTS], uint32_t out_counts[DISC_COUNTS])
 {
-    photon_selection s;
-    photon_selection_begin(&s, limit);
-    __m256 scale = _mm256_set1_ps(s.scale);
-    uint32_t whole = count & ~(uint32_t)(WIDTH - 1);
-    for (uint32_t i = 0; i < whole; i += WIDTH) {
-        _Alignas(32) uint32_t bin[WIDTH];
-        __m256 d = distances(load(&n[i]), load(&n[i + 4]));
-        _mm256_store_si256((__m256i *)(void *)bin, _mm256_cvttps_epi32(_mm256_mul_ps(d, scale)));
-        for (uint32_t k = 0; k < WIDTH; k++)
-            s.histogram[bin[k]]++;
+    __m256 limits[DISC_COUNTS];
+    __m256i counts[DISC_COUNTS]; /* less so many */
+    for (int k = 0; k < DISC_COUNTS; k++) {
+        limits[k] = _mm256_set1_ps(most[k]);
+        counts[k] = _mm256_setzero_si256();
     }
-    photon_selection_count(&s, n, whole, count);
-    if (!photon_selection_find_bin(&s, n, count, wanted))
-        return;
-    __m256i chosen = _mm256_set1_epi32((int)s.bin);
-    for (uint32_t i = 0; i < whole; i += WIDTH) {
-        /* both are read before either is written over */
-        __m256i low = load(&n[i]), high = load(&n[i + 4]);
-        __m256i its_bin = _mm256_cvttps_epi32(_mm256_mul_ps(distances(low, high), scale));
-        its_bin = _mm256_permute4x64_epi64(its_bin, _MM_SHUFFLE(3, 1, 2, 0));
-        uint32_t nearer = (uint32_t)_mm256_movemask_ps(_mm256_castsi256_ps(_mm256_cmpgt_epi32(chosen, its_bin)));
-        uint32_t in = (uint32_t)_mm256_movemask_ps(_mm256_castsi256_ps(_mm256_cmpeq_epi32(chosen, its_bin)));
-        for (; in; in &= in - 1)
-            s.in_bin[s.in_bin_count++] = n[i + (uint32_t)__builtin_ctz(in)];
-        s.kept += store_some(n + s.kept, low, nearer & 15);
-        s.kept += store_some(n + s.kept, high, nearer >> 4);
+    for (uint32_t i = 0; i < f->leaf_count * PHOTON_BLOCK_LANES; i += WIDTH) {
+        __m256 d = _mm256_load_ps(f->distances_squared + i);
+        for (int k = 0; k < DISC_COUNTS; k++)
+            counts[k] = _mm256_add_epi32(counts[k], _mm256_castps_si256(_mm256_cmp_ps(d, limits[k], _CMP_LE_OQ)));
     }
-    photon_selection_part(&s, n, whole, count);
-    photon_selection_end(&s, n, wanted);
+    for (int k = 0; k < DISC_COUNTS; k++)
+        out_counts[k] = 0 - sum_of_32(counts[k]);
+}
+
+AVX2 static uint32_t list_between(const photon_found *f, float low, float high, photon_neighbor *out_neighbors)
+{
+    const __m256 least = _mm256_set1_ps(low), most = _mm256_set1_ps(high);
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < f->leaf_count * PHOTON_BLOCK_LANES; i += WIDTH) {
+        __m256 d = _mm256_load_ps(f->distances_squared + i);
+        uint32_t between = (uint32_t)_mm256_movemask_ps(
+            _mm256_and_ps(_mm256_cmp_ps(d, least, _CMP_GT_OQ), _mm256_cmp_ps(d, most, _CMP_LE_OQ)));
+        for (; between; between &= between - 1) {
+            uint32_t slot = i + (uint32_t)__builtin_ctz(between);
+            out_neighbors[count++] = photon_neighbor_make(f->distances_squared[slot], photon_found_index(f, slot));
+        }
+    }
+    return count;
 }
 
 AVX2 static inline int64_t sum_of(__m256i v)
 {
     __m128i two = _mm_add_epi64(_mm256_castsi256_si128(v), _mm256_extracti128_si256(v, 1));
     return _mm_cvtsi128_si64(_mm_add_epi64(two, _mm_unpackhi_epi64(two, two)));
-}
-
-AVX2 static inline int32_t sum_of_32(__m256i v)
-{
-    __m128i four = _mm_add_epi32(_mm256_castsi256_si128(v), _mm256_extracti128_si256(v, 1));
-    __m128i two = _mm_add_epi32(four, _mm_unpackhi_epi64(four, four));
-    return _mm_cvtsi128_si32(_mm_add_epi32(two, _mm_shuffle_epi32(two, 1)));
 }
 
 /* Mantissas, in the lowest bytes, times 2^32 and shifted down; of those 64 octaves below nothing is left. */
@@ -258,119 +228,174 @@ AVX2 static inline __m256i add_shifted(__m256i sum, __m256i mantissas, __m256i b
     return _mm256_add_epi64(_mm256_add_epi64(sum, even), odd);
 }
 
-/* Where the photons of four neighbours lie: their blocks in bytes from the first one, which may be more than 32 bits
- * can tell, and their lanes. */
-typedef struct lanes_4 {
-    __m256i block, lane;
-} lanes_4;
+/* The sums of eight lanes. Fluxes few octaves below the strongest are summed in 32 bits, for as many photons as do not
+ * overflow; nothing of them is lost. */
+enum { NEAR_OCTAVES = 16, FLUSH_EVERY = 128 /* times 255 << NEAR_OCTAVES is less than 2^32 */ };
 
-AVX2 static inline lanes_4 find_lanes(__m256i four)
+typedef struct sums_8 {
+    __m256i flux[3], near_flux[3], offset[3];
+    uint32_t near_count; /* vectors in near_flux */
+} sums_8;
+
+AVX2 static inline void sums_begin(sums_8 *s)
 {
-    __m256i index = _mm256_and_si256(four, _mm256_set1_epi64x(UINT32_MAX));
-    __m256i block = _mm256_srli_epi64(index, 4); /* 16 lanes */
-    return (lanes_4){_mm256_mul_epu32(block, _mm256_set1_epi64x(sizeof(photon_block))),
-                     _mm256_and_si256(index, _mm256_set1_epi64x(PHOTON_BLOCK_LANES - 1))};
+    *s = (sums_8){.near_count = 0};
+    for (int c = 0; c < 3; c++)
+        s->flux[c] = s->near_flux[c] = s->offset[c] = _mm256_setzero_si256();
 }
 
-/* Gathers words of a column by offsets in bytes from the first block. */
-AVX2 static inline __m256i gather_words(const void *column, __m256i low, __m256i high)
+AVX2 static inline void sums_flush(sums_8 *s)
 {
-    return _mm256_set_m128i(_mm256_i64gather_epi32((const int *)column, high, 1),
-                            _mm256_i64gather_epi32((const int *)column, low, 1));
+    const __m256i low = _mm256_set1_epi64x(UINT32_MAX);
+    for (int c = 0; c < 3; c++) {
+        __m256i even = _mm256_and_si256(s->near_flux[c], low), odd = _mm256_srli_epi64(s->near_flux[c], 32);
+        __m256i both = _mm256_slli_epi64(_mm256_add_epi64(even, odd), 32 - NEAR_OCTAVES);
+        s->flux[c] = _mm256_add_epi64(s->flux[c], both);
+        s->near_flux[c] = _mm256_setzero_si256();
+    }
+    s->near_count = 0;
 }
 
-AVX2 static inline __m256i word_of_lane(lanes_4 p) { return _mm256_add_epi64(p.block, _mm256_slli_epi64(p.lane, 2)); }
-
-/* Gives the 32-bit word that holds a lane's half-word and its neighbour. */
-AVX2 static inline __m256i pair_of_lane(lanes_4 p)
+/* photon_disc_add of those of eight photons that count. */
+AVX2 static inline void sums_add(sums_8 *s, const photon_disc *disc, const uint32_t *flux, vec3_8 offset,
+                                 __m256i counts)
 {
-    __m256i pair = _mm256_srli_epi64(p.lane, 1);
-    return _mm256_add_epi64(p.block, _mm256_slli_epi64(pair, 2));
+    const __m256i byte = _mm256_set1_epi32(255), most = _mm256_set1_epi32(disc->flux_exponent_max + 128),
+                  octaves = _mm256_set1_epi32(NEAR_OCTAVES);
+    const __m256 scale = _mm256_set1_ps(PHOTON_DISC_OFFSET_UNIT / disc->radius);
+    __m256i code = _mm256_and_si256(_mm256_load_si256((const __m256i *)(const void *)flux), counts);
+    __m256i below = _mm256_sub_epi32(most, _mm256_srli_epi32(code, 24));
+    __m256i is_far = _mm256_and_si256(_mm256_cmpgt_epi32(below, octaves), counts);
+    if (_mm256_testz_si256(is_far, is_far)) {
+        __m256i shift = _mm256_sub_epi32(octaves, below); /* of those that do not count: beyond 32 bits, which is 0 */
+        for (int c = 0; c < 3; c++)
+            s->near_flux[c] = _mm256_add_epi32(
+                s->near_flux[c], _mm256_sllv_epi32(_mm256_and_si256(_mm256_srli_epi32(code, 16 - 8 * c), byte), shift));
+        if (++s->near_count == FLUSH_EVERY)
+            sums_flush(s);
+    } else {
+        for (int c = 0; c < 3; c++)
+            s->flux[c] = add_shifted(s->flux[c], _mm256_and_si256(_mm256_srli_epi32(code, 16 - 8 * c), byte), below);
+    }
+    const __m256 column[3] = {offset.x, offset.y, offset.z};
+    for (int a = 0; a < 3; a++)
+        s->offset[a] = _mm256_add_epi32(s->offset[a],
+                                        _mm256_and_si256(_mm256_cvttps_epi32(_mm256_mul_ps(column[a], scale)), counts));
 }
 
-AVX2 static inline __m256i gather_normals(const photon_block *blocks, lanes_4 low, lanes_4 high)
+AVX2 static inline void sums_end(sums_8 *s, photon_disc_sums *out_sums)
 {
-    __m256i pairs = gather_words(blocks->normal, pair_of_lane(low), pair_of_lane(high));
-    /* lanes are few: the low words of all, side by side */
-    __m256i lanes = _mm256_castps_si256(
-        _mm256_shuffle_ps(_mm256_castsi256_ps(low.lane), _mm256_castsi256_ps(high.lane), _MM_SHUFFLE(2, 0, 2, 0)));
-    lanes = _mm256_permute4x64_epi64(lanes, _MM_SHUFFLE(3, 1, 2, 0));
-    __m256i is_odd = _mm256_and_si256(lanes, _mm256_set1_epi32(1));
-    __m256i code = _mm256_srlv_epi32(pairs, _mm256_slli_epi32(is_odd, 4));
-    return _mm256_and_si256(code, _mm256_set1_epi32(UINT16_MAX));
+    sums_flush(s);
+    for (int c = 0; c < 3; c++) {
+        out_sums->flux[c] = sum_of(s->flux[c]);
+        out_sums->offset[c] = (int32_t)sum_of_32(s->offset[c]);
+    }
 }
 
-/* photon_disc_is_on_level, as bits. */
-AVX2 static inline uint32_t find_on_level(const photon_disc *disc, vec3_8 offset, lanes_4 low, lanes_4 high)
+/* Eight photons of those found, as vectors; false where none of them is. */
+typedef struct photons_8 {
+    const photon_block *block;
+    uint32_t lane, found; /* the first one; as bits */
+    __m256i is_found;
+    vec3_8 offset; /* from the disc's centre */
+} photons_8;
+
+AVX2 static inline bool find_photons(const photon_disc *disc, const photon_found *f, uint32_t slot, photons_8 *out)
+{
+    __m256 is_found = _mm256_cmp_ps(_mm256_load_ps(f->distances_squared + slot), _mm256_set1_ps(f->limit), _CMP_LE_OQ);
+    out->found = (uint32_t)_mm256_movemask_ps(is_found);
+    if (!out->found)
+        return false;
+    const photon_block *b = &disc->blocks[f->leaves[slot / PHOTON_BLOCK_LANES]];
+    uint32_t lane = slot % PHOTON_BLOCK_LANES;
+    vec3_8 at = {_mm256_load_ps(&b->position[0][lane]), _mm256_load_ps(&b->position[1][lane]),
+                 _mm256_load_ps(&b->position[2][lane])};
+    out->block = b;
+    out->lane = lane;
+    out->is_found = _mm256_castps_si256(is_found);
+    out->offset = sub(at, fill(disc->position));
+    return true;
+}
+
+/* photon_disc_is_on_level. */
+AVX2 static inline __m256i find_on_level(const photon_disc *disc, const photons_8 *p)
 {
     vec3_8 normal = fill(disc->normal);
-    __m256 level = _mm256_set1_ps(disc->level), zero = _mm256_setzero_ps(), height = dot(offset, normal);
-    uint32_t flat = (uint32_t)_mm256_movemask_ps(_mm256_cmp_ps(absolute(height), level, _CMP_LE_OQ));
-    if (flat == 255)
-        return flat;
-    vec3_8 n = decode(gather_normals(disc->blocks, low, high));
+    __m256 level = _mm256_set1_ps(disc->level), height = dot(p->offset, normal);
+    __m256 is_flat = _mm256_cmp_ps(absolute(height), level, _CMP_LE_OQ);
+    if (_mm256_testc_ps(is_flat, _mm256_castsi256_ps(p->is_found)))
+        return _mm256_castps_si256(is_flat);
+    __m128i codes = _mm_load_si128((const __m128i *)(const void *)&p->block->normal[p->lane]);
+    vec3_8 n = decode(_mm256_cvtepu16_epi32(codes));
     __m256 below = _mm256_sub_ps(negate(height), level), d = dot(n, normal), square = _mm256_mul_ps(d, d);
-    __m256 lateral_squared = _mm256_sub_ps(dot(offset, offset), _mm256_mul_ps(height, height));
+    __m256 lateral_squared = _mm256_sub_ps(dot(p->offset, p->offset), _mm256_mul_ps(height, height));
     __m256 least = _mm256_mul_ps(_mm256_mul_ps(below, below), square);
     __m256 most = _mm256_mul_ps(lateral_squared, _mm256_sub_ps(dot(n, n), square));
-    __m256 is_convex = _mm256_and_ps(_mm256_cmp_ps(below, zero, _CMP_GT_OQ), _mm256_cmp_ps(least, most, _CMP_LE_OQ));
-    return flat | (uint32_t)_mm256_movemask_ps(is_convex);
+    __m256 is_convex =
+        _mm256_and_ps(_mm256_cmp_ps(below, _mm256_setzero_ps(), _CMP_GT_OQ), _mm256_cmp_ps(least, most, _CMP_LE_OQ));
+    return _mm256_castps_si256(_mm256_or_ps(is_flat, is_convex));
 }
 
-AVX2 static uint32_t sum_on_level(const photon_disc *disc, photon_neighbor *n, uint32_t count,
-                                  photon_disc_sums *out_sums, photon_neighbor *out_doubtful)
+AVX2 static uint32_t sum_on_level(const photon_disc *disc, const photon_found *f, photon_disc_sums *out_sums,
+                                  photon_neighbor *out_doubtful)
 {
-    const photon_block *blocks = disc->blocks;
-    vec3_8 position = fill(disc->position);
-    __m256 scale = _mm256_set1_ps(PHOTON_DISC_OFFSET_UNIT / disc->radius);
-    __m256i byte = _mm256_set1_epi32(255), most = _mm256_set1_epi32(disc->flux_exponent_max + 128),
-            none = _mm256_setzero_si256(), flux[3] = {none, none, none}, offsets[3] = {none, none, none},
-            bits = _mm256_setr_epi32(1, 2, 4, 8, 16, 32, 64, 128);
-    uint32_t kept = 0, doubtful = 0, i = 0;
-    for (; i + WIDTH <= count; i += WIDTH) {
-        /* both fours are read before either is written over */
-        __m256i first = load(&n[i]), second = load(&n[i + 4]);
-        lanes_4 low = find_lanes(first), high = find_lanes(second);
-        __m256i low_word = word_of_lane(low), high_word = word_of_lane(high);
-        vec3_8 at = {_mm256_castsi256_ps(gather_words(blocks->position[0], low_word, high_word)),
-                     _mm256_castsi256_ps(gather_words(blocks->position[1], low_word, high_word)),
-                     _mm256_castsi256_ps(gather_words(blocks->position[2], low_word, high_word))};
-        vec3_8 offset = sub(at, position);
-        uint32_t on_level = find_on_level(disc, offset, low, high);
-        __m256i keeps = _mm256_cmpeq_epi32(_mm256_and_si256(_mm256_set1_epi32((int)on_level), bits), bits);
-
-        __m256i code = gather_words(blocks->flux, low_word, high_word);
-        __m256i below = _mm256_sub_epi32(most, _mm256_srli_epi32(code, 24));
-        code = _mm256_and_si256(code, keeps);
-        for (int c = 0; c < 3; c++)
-            flux[c] = add_shifted(flux[c], _mm256_and_si256(_mm256_srli_epi32(code, 16 - 8 * c), byte), below);
-        const __m256 column[3] = {offset.x, offset.y, offset.z};
-        for (int a = 0; a < 3; a++)
-            offsets[a] = _mm256_add_epi32(
-                offsets[a], _mm256_and_si256(_mm256_cvttps_epi32(_mm256_mul_ps(column[a], scale)), keeps));
-
-        if (on_level == 255) {
-            _mm256_storeu_si256((__m256i *)(void *)(n + kept), first);
-            _mm256_storeu_si256((__m256i *)(void *)(n + kept + 4), second);
-            kept += WIDTH;
+    sums_8 sums;
+    sums_begin(&sums);
+    uint32_t kept = 0, doubtful = 0;
+    for (uint32_t i = 0; i < f->leaf_count * PHOTON_BLOCK_LANES; i += WIDTH) {
+        photons_8 p;
+        if (!find_photons(disc, f, i, &p))
             continue;
-        }
-        kept += store_some(n + kept, first, on_level & 15);
-        kept += store_some(n + kept, second, on_level >> 4);
-        doubtful += store_some(out_doubtful + doubtful, first, ~on_level & 15);
-        doubtful += store_some(out_doubtful + doubtful, second, ~on_level >> 4 & 15);
+        __m256i keeps = _mm256_and_si256(find_on_level(disc, &p), p.is_found);
+        sums_add(&sums, disc, &p.block->flux[p.lane], p.offset, keeps);
+        uint32_t on_level = (uint32_t)_mm256_movemask_ps(_mm256_castsi256_ps(keeps));
+        kept += (uint32_t)__builtin_popcount(on_level);
+        for (uint32_t rest = p.found & ~on_level; rest; rest &= rest - 1)
+            out_doubtful[doubtful++] = i + (uint32_t)__builtin_ctz(rest);
     }
-    for (int c = 0; c < 3; c++) {
-        out_sums->flux[c] = sum_of(flux[c]);
-        out_sums->offset[c] = sum_of_32(offsets[c]);
-    }
-    photon_disc_part(disc, n, i, count, &kept, out_sums, out_doubtful);
+    sums_end(&sums, out_sums);
     return kept;
+}
+
+/* surface_region_contains of points by their offset from the centre. */
+AVX2 static inline __m256i find_inside(const surface_region *region, const __m256 line[2], vec3_8 offset)
+{
+    __m256 zero = _mm256_setzero_ps(), x = dot(offset, fill(region->x)), y = dot(offset, fill(region->y));
+    __m256 is_steep = _mm256_cmp_ps(absolute(y), absolute(x), _CMP_GT_OQ), is_left = _mm256_cmp_ps(x, zero, _CMP_LT_OQ),
+           is_low = _mm256_cmp_ps(y, zero, _CMP_LT_OQ);
+    __m256i part =
+        _mm256_or_si256(_mm256_or_si256(_mm256_and_si256(_mm256_castps_si256(is_steep), _mm256_set1_epi32(1)),
+                                        _mm256_and_si256(_mm256_castps_si256(is_left), _mm256_set1_epi32(2))),
+                        _mm256_and_si256(_mm256_castps_si256(is_low), _mm256_set1_epi32(4)));
+    __m256 a = _mm256_permutevar8x32_ps(line[0], part), b = _mm256_permutevar8x32_ps(line[1], part);
+    __m256 along = _mm256_add_ps(_mm256_mul_ps(a, x), _mm256_mul_ps(b, y));
+    return _mm256_castps_si256(_mm256_cmp_ps(along, _mm256_set1_ps(1.0f), _CMP_LE_OQ));
+}
+
+AVX2 static uint32_t sum_in_region(const photon_disc *disc, const surface_region *region, const photon_found *f,
+                                   photon_disc_sums *out_sums)
+{
+    const float *lines = region->line[0];
+    const __m256i octants = _mm256_slli_epi32(load(SURFACE_REGION_OCTANT), 1);
+    const __m256 line[2] = {_mm256_i32gather_ps(lines, octants, 4), _mm256_i32gather_ps(lines + 1, octants, 4)};
+    sums_8 sums;
+    sums_begin(&sums);
+    uint32_t inside = 0;
+    for (uint32_t i = 0; i < f->leaf_count * PHOTON_BLOCK_LANES; i += WIDTH) {
+        photons_8 p;
+        if (!find_photons(disc, f, i, &p))
+            continue;
+        __m256i is_inside = _mm256_and_si256(find_inside(region, line, p.offset), p.is_found);
+        sums_add(&sums, disc, &p.block->flux[p.lane], p.offset, is_inside);
+        inside += (uint32_t)__builtin_popcount((uint32_t)_mm256_movemask_ps(_mm256_castsi256_ps(is_inside)));
+    }
+    sums_end(&sums, out_sums);
+    return inside;
 }
 
 const disc_kernels *disc_kernels_avx2(void)
 {
-    static const disc_kernels KERNELS = {find_leaves, collect, select_nearest, sum_on_level};
+    static const disc_kernels KERNELS = {find_leaves, collect, count_within, list_between, sum_on_level, sum_in_region};
     return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("popcnt") ? &KERNELS : NULL;
 }
 

@@ -40,18 +40,12 @@ static bool is_of_this_level(const photon_map *map, const photon_disc *disc, uin
     return !scene_is_blocked(map->surfaces, up, 1.0f);
 }
 
-/* Sums the photons of the disc that are in the region. Returns how many they are. */
-static uint32_t sum_in_region(const photon_disc *disc, const surface_region *region, const photon_neighbor *n,
-                              uint32_t count, photon_disc_sums *out_sums)
+static uint32_t count_within(const photon_found *found, float most)
 {
-    uint32_t inside = 0;
-    *out_sums = (photon_disc_sums){{0}, {0}};
-    for (uint32_t i = 0; i < count; i++)
-        if (surface_region_contains(region, photon_block_position(disc->blocks, photon_neighbor_index(n[i])))) {
-            photon_disc_add(disc, n[i], out_sums);
-            inside++;
-        }
-    return inside;
+    const float same[DISC_COUNTS] = {most, most, most};
+    uint32_t counts[DISC_COUNTS];
+    disc_kernels_best()->count_within(found, same, counts);
+    return counts[0];
 }
 
 /* Under uniform irradiance each ring of a quarter of the disc's area holds a quarter of the photons and of their flux.
@@ -60,49 +54,58 @@ static uint32_t sum_in_region(const photon_disc *disc, const surface_region *reg
 static const float RIM_SIGMAS = 3.25f;
 enum { RINGS = 4 };
 
-/* Returns whether the innermost rings lack flux: there may be fewer photons because they were thinned, each being
- * brighter for it. Sums are of integers, in any order. */
-static bool rings_lack_flux(const photon_map *map, const photon_neighbor *n, uint32_t count, float radius_squared,
-                            uint32_t rings)
+/* Returns whether the photons no farther than `inner` lack flux: there may be fewer of them because they were thinned,
+ * each being brighter for it. Sums are of integers, in any order. */
+static bool rings_lack_flux(const photon_found *found, float inner, float share)
 {
     enum { FRACTION_BITS = 8 };
     int exponent_max = FLUX_EXPONENT_MIN;
-    for (uint32_t i = 0; i < count; i++) {
-        int exponent = flux_exponent(photon_block_flux(map->blocks, photon_neighbor_index(n[i])));
-        exponent_max = exponent > exponent_max ? exponent : exponent_max;
-    }
-    float share = (float)rings / (float)RINGS, inner_squared = share * radius_squared;
+    const uint32_t slots = found->leaf_count * PHOTON_BLOCK_LANES;
+    for (uint32_t i = 0; i < slots; i++)
+        if (found->distances_squared[i] <= found->limit) {
+            int exponent = flux_exponent(photon_block_flux(found->blocks, photon_found_index(found, i)));
+            exponent_max = exponent > exponent_max ? exponent : exponent_max;
+        }
     uint64_t all = 0, inside = 0, squares = 0;
-    for (uint32_t i = 0; i < count; i++) {
-        uint32_t code = photon_block_flux(map->blocks, photon_neighbor_index(n[i]));
+    for (uint32_t i = 0; i < slots; i++) {
+        if (!(found->distances_squared[i] <= found->limit))
+            continue;
+        uint32_t code = photon_block_flux(found->blocks, photon_found_index(found, i));
         int shift = exponent_max - flux_exponent(code);
         uint64_t r = code >> 16 & 255, g = code >> 8 & 255, b = code & 255, largest = r > g ? r : g;
         uint64_t flux = shift > 2 * FRACTION_BITS ? 0 : ((largest > b ? largest : b) << FRACTION_BITS) >> shift;
         all += flux;
         squares += flux * flux;
-        inside += photon_neighbor_distance_squared(n[i]) < inner_squared ? flux : 0;
+        inside += found->distances_squared[i] <= inner ? flux : 0;
     }
     double missing = (double)share * (double)all - (double)inside;
     double variance = (double)(share * (1.0f - share)) * (double)squares;
     return missing > 0.0 && missing * missing > (double)(RIM_SIGMAS * RIM_SIGMAS) * variance;
 }
 
+/* The largest number that is less than a positive one. */
+static float next_below(float x) { return nextafterf(x, 0.0f); }
+
 /* How many rings, from the innermost, have no more light than the point itself; RINGS where all are so. */
-static uint32_t rings_of_one_light(const photon_map *map, const photon_neighbor *n, uint32_t count,
-                                   float radius_squared)
+static uint32_t rings_of_one_light(const photon_found *found, float radius_squared)
 {
-    uint32_t in_ring[RINGS] = {0}, inside = count;
-    float ring_of = (float)RINGS / radius_squared;
-    for (uint32_t i = 0; i < count; i++) {
-        float ring = photon_neighbor_distance_squared(n[i]) * ring_of;
-        in_ring[ring < (float)(RINGS - 1) ? (uint32_t)ring : RINGS - 1]++;
+    float ring_of = (float)RINGS / radius_squared, most[RINGS - 1];
+    uint32_t within[RINGS - 1];
+    for (uint32_t rings = 1; rings < RINGS; rings++) {
+        /* the largest squared distance in these rings: times ring_of, as rounded, it is less than their number */
+        float d = (float)rings / ring_of;
+        while (d * ring_of < (float)rings)
+            d = nextafterf(d, INFINITY);
+        while (d * ring_of >= (float)rings)
+            d = next_below(d);
+        most[rings - 1] = d;
     }
+    disc_kernels_best()->count_within(found, most, within);
     for (uint32_t rings = RINGS - 1; rings > 0; rings--) {
-        float share = (float)rings / (float)RINGS, expected = share * (float)count;
-        inside -= in_ring[rings];
-        float missing = expected - (float)inside;
+        float share = (float)rings / (float)RINGS, expected = share * (float)found->count;
+        float missing = expected - (float)within[rings - 1];
         if (missing > 0.0f && missing * missing > RIM_SIGMAS * RIM_SIGMAS * expected * (1.0f - share) &&
-            rings_lack_flux(map, n, count, radius_squared, rings))
+            rings_lack_flux(found, next_below(share * radius_squared), share))
             return rings;
     }
     return RINGS;
@@ -110,19 +113,14 @@ static uint32_t rings_of_one_light(const photon_map *map, const photon_neighbor 
 
 /* Makes the disc smaller until its rim is as bright as its middle, or has no photons. By their number as well as by
  * their flux: one bright photon, which is a matter of chance, would take itself out of the disc where it lies far from
- * the point. Returns how many photons are left, first in n. */
-static uint32_t leave_brighter_rim(const photon_map *map, photon_neighbor *n, uint32_t count,
-                                   float *in_out_radius_squared)
+ * the point. */
+static void leave_brighter_rim(photon_found *found, float *in_out_radius_squared)
 {
-    for (uint32_t rings; (rings = rings_of_one_light(map, n, count, *in_out_radius_squared)) < RINGS;) {
-        uint32_t left = 0;
+    for (uint32_t rings; (rings = rings_of_one_light(found, *in_out_radius_squared)) < RINGS;) {
         *in_out_radius_squared *= (float)rings / (float)RINGS;
-        for (uint32_t i = 0; i < count; i++)
-            if (photon_neighbor_distance_squared(n[i]) < *in_out_radius_squared)
-                n[left++] = n[i];
-        count = left;
+        found->limit = next_below(*in_out_radius_squared);
+        found->count = count_within(found, found->limit);
     }
-    return count;
 }
 
 /* A region holds an estimate if it is at least this share of the disc, and if photons of the disc's density, or of the
@@ -139,17 +137,14 @@ static bool region_holds(const photon_map *map, double area, float radius)
 /* The share of the photons found that must lie on the point's own level, else other levels have set the radius. */
 static const float LEVEL_SHARE_MIN = 0.5f;
 
-/* Returns the reach of an estimate from the number of photons found, the last of which is the farthest if there is one
- * more than it sums. Among equally far ones the photons' order decides which of them count. */
-static float reach_of(const photon_map *map, const photon_neighbor *n, uint32_t found)
+/* Returns the reach of an estimate. Among equally far photons their order decides which of them count. */
+static float reach_of(const photon_map *map, const photon_found *found)
 {
-    if (found <= map->nearest)
+    if (found->count <= map->nearest)
         return map->max_radius * map->max_radius;
-    float farthest = photon_neighbor_distance_squared(n[map->nearest]);
-    bool is_clear = farthest > map->min_radius_squared;
-    for (uint32_t i = 0; i < map->nearest; i++)
-        is_clear = is_clear && photon_neighbor_distance_squared(n[i]) < farthest;
-    return is_clear ? farthest : 0.0f;
+    bool is_clear =
+        found->limit > map->min_radius_squared && count_within(found, next_below(found->limit)) == map->nearest;
+    return is_clear ? found->limit : 0.0f;
 }
 
 irradiance_extent irradiance_estimate_find(const photon_map *map, vec3 position, vec3 normal, photon_neighbor *scratch,
@@ -165,46 +160,50 @@ irradiance_extent irradiance_estimate_find_reach(const photon_map *map, vec3 pos
     *out_irradiance = rgb_gray(0.0f);
     if (map->set.count == 0)
         return IRRADIANCE_HOLDS_EVERYWHERE;
-    float other_squared;
-    uint32_t found = photon_tree_k_nearest(&map->tree, position, normal, PHOTON_ESTIMATE_MIN_COS, map->max_radius,
-                                           map->nearest + 1, scratch, &other_squared);
+    const uint32_t wanted = map->nearest + 1;
+    const disc_kernels *kernels = disc_kernels_best();
+    photon_found found;
+    photon_found_init(&found, &map->tree, wanted, scratch);
+    photon_found_search(&found, &map->tree, position, normal, PHOTON_ESTIMATE_MIN_COS, map->max_radius, wanted);
     if (out_reach_squared)
-        *out_reach_squared = reach_of(map, scratch, found);
+        *out_reach_squared = reach_of(map, &found);
+    const bool has_next = found.count == wanted;
     float radius_squared = map->max_radius * map->max_radius;
-    uint32_t count = found;
-    if (found == map->nearest + 1) {
-        count = map->nearest; /* the farthest is the last */
-        radius_squared = photon_neighbor_distance_squared(scratch[count]);
+    if (has_next) {
+        radius_squared = found.limit;
+        photon_found_forget(&found, found.farthest);
     }
     radius_squared = fmaxf(radius_squared, map->min_radius_squared);
-    count = leave_brighter_rim(map, scratch, count, &radius_squared);
+    leave_brighter_rim(&found, &radius_squared);
     radius_squared = fmaxf(radius_squared, map->min_radius_squared);
     float radius = sqrtf(radius_squared);
     double area = (double)AG_PI * (double)radius_squared;
     photon_disc disc = {map->blocks,           position, normal, radius, map->surfaces ? radius * LEVEL : INFINITY,
                         map->flux_exponent_max};
-    photon_neighbor *doubtful = scratch + count;
     photon_disc_sums sums;
-    uint32_t kept = disc_kernels_best()->sum_on_level(&disc, scratch, count, &sums, doubtful);
-    for (uint32_t i = 0, doubtful_count = count - kept; i < doubtful_count; i++)
-        if (is_of_this_level(map, &disc, photon_neighbor_index(doubtful[i]), in_out_rays)) {
-            photon_disc_add(&disc, doubtful[i], &sums);
-            scratch[kept++] = doubtful[i];
-        }
+    const uint32_t count = found.count, on_level = kernels->sum_on_level(&disc, &found, &sums, scratch);
+    for (uint32_t i = 0; i < count - on_level; i++) {
+        uint32_t slot = photon_neighbor_index(scratch[i]), index = photon_found_index(&found, slot);
+        if (is_of_this_level(map, &disc, index, in_out_rays))
+            photon_disc_add(&disc, index, &sums);
+        else
+            photon_found_forget_slot(&found, slot);
+    }
+    const uint32_t kept = found.count;
     surface_region region;
     irradiance_extent extent = kept < count ? IRRADIANCE_HOLDS_IN_SIGHT : IRRADIANCE_HOLDS_EVERYWHERE;
     bool may_end =
         map->surfaces &&
-        (kept < count || other_squared <= radius_squared || is_lopsided(&sums, normal, kept) ||
+        (kept < count || found.other <= radius_squared || is_lopsided(&sums, normal, kept) ||
          !surface_region_reaches_rim(map->surfaces, position, normal, PHOTON_ESTIMATE_MIN_COS, radius, in_out_rays));
-    if (found == map->nearest + 1 && (float)kept < LEVEL_SHARE_MIN * (float)count) {
+    if (has_next && (float)kept < LEVEL_SHARE_MIN * (float)count) {
         extent = IRRADIANCE_HOLDS_NOWHERE;
     } else if (may_end && surface_region_find(map->surfaces, position, normal, PHOTON_ESTIMATE_MIN_COS, radius,
                                               in_out_rays, &region)) {
         double region_area = surface_region_area(&region, radius);
         photon_disc_sums whole = sums;
-        uint32_t inside = sum_in_region(&disc, &region, scratch, kept, &sums);
-        bool is_k = found == map->nearest + 1 && inside == map->nearest;
+        uint32_t inside = kernels->sum_in_region(&disc, &region, &found, &sums);
+        bool is_k = has_next && inside == map->nearest;
         if (is_k || region_holds(map, region_area, radius)) {
             area = region_area;
             /* farther points must see the photon anyway */

@@ -25,40 +25,33 @@ static void stack_other_sides(photon_query *q, uint32_t node, uint32_t height, f
     }
 }
 
-static void keep_nearest(const disc_kernels *kernels, uint32_t wanted, photon_collection *c)
-{
-    kernels->select(c->neighbors, c->count, wanted, c->limit);
-    c->count = wanted;
-}
-
 /* Collects the photons within the limit; where they are too many, keeps the nearest and shrinks the limit. Leaves are
  * prefetched while others are searched. */
-static void collect(const disc_kernels *kernels, photon_query *q, uint32_t first_leaf, uint32_t wanted,
-                    photon_collection *c)
+static void collect(const disc_kernels *kernels, photon_query *q, uint32_t first_leaf, uint32_t wanted, photon_found *f)
 {
     enum { LEAVES = 4 * PHOTON_SUBTREE_LEAVES };
     uint32_t leaves[LEAVES], depth = q->tree->depth, height = depth < PHOTON_SUBTREE_LEVELS ? 0 : PHOTON_SUBTREE_LEVELS;
     photon_subtree next = {photon_lanes_fill(0.0f), (((1u << depth) + first_leaf) >> height) - 1};
-    stack_other_sides(q, next.node, height, c->limit);
+    stack_other_sides(q, next.node, height, f->limit);
     for (bool is_left = true; is_left;) {
         uint32_t count = 0, before = 0;
         do {
             if (height > 0)
-                count += kernels->find_leaves(q, next, photon_query_hair_beyond(c->limit), leaves + count);
+                count += kernels->find_leaves(q, next, photon_query_hair_beyond(f->limit), leaves + count);
             else
                 leaves[count++] = next.node - ((1u << depth) - 1);
             for (; before < count; before++)
                 photon_block_prefetch(&q->tree->blocks[leaves[before]]);
-            is_left = photon_query_next(q, c->limit, height, &next);
+            is_left = photon_query_next(q, f->limit, height, &next);
         } while (is_left && count + PHOTON_SUBTREE_LEAVES <= LEAVES);
-        uint32_t done = kernels->collect(q, leaves, count, c);
-        for (; done < count; done += kernels->collect(q, leaves + done, count - done, c)) {
-            keep_nearest(kernels, wanted, c);
-            c->limit = photon_neighbor_distance_squared(c->neighbors[wanted - 1]);
+        uint32_t done = kernels->collect(q, leaves, count, f);
+        for (; done < count; done += kernels->collect(q, leaves + done, count - done, f)) {
+            disc_kernels_keep_nearest(kernels, f, wanted); /* each leaf has a photon: they are more than wanted */
+            photon_found_drop_empty_leaves(f);
         }
     }
-    if (c->count >= wanted)
-        keep_nearest(kernels, wanted, c);
+    if (f->count >= wanted)
+        disc_kernels_keep_nearest(kernels, f, wanted);
 }
 
 /* A first radius squared, within which the wanted photons may be expected: the few leaves around the query tell how
@@ -102,32 +95,25 @@ static float guess_radius_squared(const photon_query *q, uint32_t first_block, u
     return guess > 0.0f && guess < largest ? guess : largest;
 }
 
-uint32_t disc_kernels_k_nearest(const disc_kernels *kernels, const photon_tree *tree, vec3 position, vec3 normal,
-                                float min_cos, float radius, uint32_t wanted, photon_neighbor *neighbors,
-                                float *out_other_squared)
+void disc_kernels_search(const disc_kernels *kernels, photon_found *found, const photon_tree *tree, vec3 position,
+                         vec3 normal, float min_cos, float radius, uint32_t wanted)
 {
-    *out_other_squared = INFINITY;
+    found->leaf_count = found->count = 0;
+    found->other = INFINITY;
     if (tree->count == 0)
-        return 0;
+        return;
     photon_query q;
     photon_query_init(&q, tree, position, normal, min_cos);
     uint32_t leaf = first_leaf(&q);
     float largest = radius * radius, limit = guess_radius_squared(&q, leaf, wanted, largest);
     for (;;) {
-        photon_collection c = {
-            .neighbors = neighbors, .capacity = photon_neighbors_capacity(wanted), .limit = limit, .other = INFINITY};
-        collect(kernels, &q, leaf, wanted, &c);
-        *out_other_squared = c.other;
-        if (c.count == wanted || limit >= largest)
-            return c.count;
+        found->leaf_count = found->count = 0;
+        found->limit = limit;
+        found->other = INFINITY;
+        collect(kernels, &q, leaf, wanted, found);
+        if (found->count == wanted || limit >= largest)
+            return;
         /* too few: by how many tells how much farther to look */
-        limit = fminf(limit * fminf(4.0f, 1.3f * (float)wanted / (float)(c.count + 1)), largest);
+        limit = fminf(limit * fminf(4.0f, 1.3f * (float)wanted / (float)(found->count + 1)), largest);
     }
-}
-
-uint32_t photon_tree_k_nearest(const photon_tree *tree, vec3 position, vec3 normal, float min_cos, float radius,
-                               uint32_t wanted, photon_neighbor *neighbors, float *out_other_squared)
-{
-    return disc_kernels_k_nearest(disc_kernels_best(), tree, position, normal, min_cos, radius, wanted, neighbors,
-                                  out_other_squared);
 }

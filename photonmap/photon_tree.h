@@ -96,12 +96,13 @@ void photon_walk_nearest_many(photon_walk *walk, const photon_lookup *lookups, u
                               float radius, photon_neighbor *out_nearest);
 
 /* Finds the `wanted` nearest photons within radius, unordered, except that the farthest of them is last when all were
- * found. neighbors: room for photon_neighbors_capacity(wanted). *out_other_squared: squared distance of the nearest
- * photon whose normal differs but is not opposite (beyond 120 degrees), if it is no farther than the photons found or
- * the radius; else a greater number. Returns the number found. */
+ * found (photon_found.h is the faster form). neighbors: room for photon_neighbors_capacity(wanted). *out_other_squared:
+ * squared distance of the nearest photon whose normal differs but is not opposite (beyond 120 degrees), if it is no
+ * farther than the photons found or the radius; else a greater number. Returns the number found. */
 uint32_t photon_tree_k_nearest(const photon_tree *tree, vec3 position, vec3 normal, float min_cos, float radius,
                                uint32_t wanted, photon_neighbor *neighbors, float *out_other_squared);
 
-static inline uint32_t photon_neighbors_capacity(uint32_t wanted) { return 2 * wanted + 64; }
+/* Returns the number of neighbours that a search for so many takes as scratch memory. */
+uint32_t photon_neighbors_capacity(uint32_t wanted);
 
 #endif

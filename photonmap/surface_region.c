@@ -220,10 +220,9 @@ bool surface_region_find(const scene *s, vec3 position, vec3 normal, float min_c
 
 bool surface_region_contains(const surface_region *region, vec3 position)
 {
-    static const unsigned char OCTANT[8] = {0, 1, 3, 2, 7, 6, 4, 5}; /* by y < 0, x < 0, |y| > |x| */
     vec3 offset = vec3_sub(position, region->center);
     float x = vec3_dot(offset, region->x), y = vec3_dot(offset, region->y);
-    const float *line = region->line[OCTANT[(y < 0.0f) * 4 + (x < 0.0f) * 2 + (fabsf(y) > fabsf(x))]];
+    const float *line = region->line[SURFACE_REGION_OCTANT[(y < 0.0f) * 4 + (x < 0.0f) * 2 + (fabsf(y) > fabsf(x))]];
     return line[0] * x + line[1] * y <= 1.0f;
 }
 

@@ -22,6 +22,9 @@ typedef struct surface_region {
                           units */
 } surface_region;
 
+/* The octants by bits: |y| > |x|, x < 0, y < 0, from the lowest. */
+static const uint32_t SURFACE_REGION_OCTANT[SURFACE_REGION_SECTORS] = {0, 1, 3, 2, 7, 6, 4, 5};
+
 /* Finds the region around a point. min_cos: normals with a greater cosine belong to the surface, as for photons. The
  * rays that are cast are added to *in_out_rays, here and below. Returns false where the surface has neither end nor
  * hole within radius, and where there is no surface at the point. */

@@ -4,10 +4,10 @@
 
 #include "fixtures/test_scene.h"
 
-enum { COUNT = 3000, MOST = 700 };
+enum { COUNT = 3000, LEAVES = 60 };
 
-/* A surface that bends, with photons off it here and there, of weak and strong flux. */
-static photon_tree make_tree(test_run *r, photon **out_photons)
+/* A surface that bends, with photons off it here and there, of strong flux, and of weak flux where so wanted. */
+static photon_tree make_tree(test_run *r, bool has_weak, photon **out_photons)
 {
     photon *p = photon_records_create(COUNT);
     assert_non_null(p);
@@ -19,8 +19,8 @@ static photon_tree make_tree(test_run *r, photon **out_photons)
             normal = random_direction(&random);
         if (i % 7 == 0)
             at.z += 0.2f * rng_float(&random) - 0.1f;
-        /* octaves from 0 to 255 below the strongest, most of them few */
-        uint32_t exponent = i % 11 ? 200u - i % 5 : (uint32_t)(rng_next(&random) % 201);
+        /* octaves from 0 to 200 below the strongest, most of them few */
+        uint32_t exponent = i % 11 || !has_weak ? 200u - i % 5 : (uint32_t)(rng_next(&random) % 201);
         p[i] = (photon){.position = {at.x, at.y, at.z},
                         .normal = direction_encode(normal),
                         .flux = exponent << 24 | (uint32_t)(rng_next(&random) & 0xffffff)};
@@ -31,70 +31,128 @@ static photon_tree make_tree(test_run *r, photon **out_photons)
     return tree;
 }
 
-/* Neighbours of every kind: of any number, in any order, each once. */
-static uint32_t pick_neighbors(rng *random, const photon_tree *tree, vec3 at, photon_neighbor *out)
+/* Some leaves' photons, of each leaf any, at distances that may be equal. */
+static void pick_photons(rng *random, const photon_tree *tree, vec3 at, photon_found *out)
 {
-    uint32_t count = (uint32_t)(rng_next(random) % MOST), index = (uint32_t)(rng_next(random) % tree->count);
-    for (uint32_t i = 0; i < count; i++) {
-        index = (index + 1237) % tree->count; /* a prime that does not divide COUNT */
-        float d = vec3_distance_squared(photon_block_position(tree->blocks, index), at);
-        out[i] = photon_neighbor_make(d, index);
+    uint32_t leaf_count = (uint32_t)(rng_next(random) % LEAVES), blocks = (uint32_t)photon_block_count(tree->count);
+    uint32_t leaf = (uint32_t)(rng_next(random) % blocks), few = (uint32_t)(rng_next(random) % 17);
+    for (uint32_t i = 0; i < leaf_count; i++) {
+        leaf = (leaf + 7) % blocks;
+        out->leaves[i] = leaf;
+        for (uint32_t lane = 0; lane < PHOTON_BLOCK_LANES; lane++) {
+            uint32_t index = leaf * PHOTON_BLOCK_LANES + lane;
+            bool counts = index < tree->count && rng_next(random) % 16 < few;
+            float d = counts ? vec3_distance_squared(photon_block_position(tree->blocks, index), at) : NAN;
+            out->distances_squared[i * PHOTON_BLOCK_LANES + lane] = lane % 5 ? d : roundf(8.0f * d) / 8.0f;
+        }
     }
-    return count;
+    out->leaf_count = leaf_count;
+    out->limit = 3.0f * rng_float(random);
+    out->count = 0;
+    for (uint32_t i = 0; i < leaf_count * PHOTON_BLOCK_LANES; i++)
+        out->count += out->distances_squared[i] <= out->limit;
 }
 
+static void assert_same_sums(const photon_disc_sums *a, const photon_disc_sums *b)
+{
+    assert_memory_equal(a->flux, b->flux, sizeof a->flux);
+    assert_memory_equal(a->offset, b->offset, sizeof a->offset);
+}
+
+static void check_sums(const photon_disc *disc, const photon_found *found, const bool *is_summed, uint32_t count,
+                       const photon_disc_sums *sums)
+{
+    double flux[3] = {0.0, 0.0, 0.0}, offset[3] = {0.0, 0.0, 0.0};
+    uint32_t summed = 0;
+    for (uint32_t i = 0; i < found->leaf_count * PHOTON_BLOCK_LANES; i++) {
+        if (!is_summed[i])
+            continue;
+        summed++;
+        uint32_t index = photon_found_index(found, i), code = photon_block_flux(disc->blocks, index);
+        vec3 off = vec3_sub(photon_block_position(disc->blocks, index), disc->position);
+        offset[0] += (double)off.x, offset[1] += (double)off.y, offset[2] += (double)off.z;
+        for (int c = 0; c < 3; c++)
+            flux[c] += ldexp(code >> (16 - 8 * c) & 255, 32 + flux_exponent(code) - disc->flux_exponent_max);
+    }
+    assert_int_equal(summed, count);
+    for (int c = 0; c < 3; c++) {
+        assert_true(fabs((double)sums->flux[c] - flux[c]) <= count); /* rounded down, each */
+        double unit = (double)disc->radius / (double)PHOTON_DISC_OFFSET_UNIT;
+        assert_true(fabs(sums->offset[c] * unit - offset[c]) <= (count + 1e-3) * unit);
+    }
+}
+
+/* Strong fluxes alone, which the vectors sum in another way, and with weak ones among them. */
 static void sums_are_the_same(void **state)
 {
     (void)state;
-    const disc_kernels *plain = &disc_kernels_plain, *best = disc_kernels_best();
+    const disc_kernels *kernels[] = {&disc_kernels_plain, disc_kernels_best()};
     static const float LEVELS[] = {INFINITY, 0.02f, 0.0f, 0.2f};
     test_run r;
     test_run_init(&r, 2);
-    photon *photons;
-    photon_tree tree = make_tree(&r, &photons);
-    rng random = test_random(2);
-    uint32_t doubtful_sum = 0;
-    for (int round = 0; round < 400 / FEWER; round++) {
-        photon_neighbor n[2][MOST + 8], doubtful[2][MOST + 8];
-        uint32_t photon_index = (uint32_t)(rng_next(&random) % tree.count), kept[2];
-        photon_disc disc = {.blocks = tree.blocks,
-                            .position = photon_block_position(tree.blocks, photon_index),
-                            .normal = direction_decode(photon_block_normal(tree.blocks, photon_index)),
-                            .radius = 3.0f,
-                            .level = LEVELS[round % 4],
-                            .flux_exponent_max = 72};
-        uint32_t count = pick_neighbors(&random, &tree, disc.position, n[0]);
-        photon_disc_sums sums[2];
-        memcpy(n[1], n[0], sizeof n[0]);
-        kept[0] = plain->sum_on_level(&disc, n[0], count, &sums[0], doubtful[0]);
-        kept[1] = best->sum_on_level(&disc, n[1], count, &sums[1], doubtful[1]);
-        assert_int_equal(kept[0], kept[1]);
-        assert_true(kept[0] <= count);
-        assert_memory_equal(n[0], n[1], kept[0] * sizeof **n);
-        assert_memory_equal(doubtful[0], doubtful[1], (count - kept[0]) * sizeof **n);
-        assert_memory_equal(&sums[0], &sums[1], sizeof sums[0]);
-        if (disc.level == INFINITY)
-            assert_int_equal(kept[0], count);
-        doubtful_sum += count - kept[0];
+    uint32_t doubtful_sum = 0, inside_sum = 0, outside_sum = 0;
+    for (int weak = 0; weak < 2; weak++) {
+        photon *photons;
+        photon_tree tree = make_tree(&r, weak, &photons);
+        rng random = test_random(2);
+        photon_neighbor *scratch = malloc(photon_neighbors_capacity(LEAVES) * sizeof *scratch);
+        assert_non_null(scratch);
+        for (int round = 0; round < 400 / FEWER; round++) {
+            photon_found found;
+            photon_found_init(&found, &tree, LEAVES, scratch);
+            uint32_t photon_index = (uint32_t)(rng_next(&random) % tree.count), kept[2], inside[2];
+            photon_disc disc = {.blocks = tree.blocks,
+                                .position = photon_block_position(tree.blocks, photon_index),
+                                .normal = direction_decode(photon_block_normal(tree.blocks, photon_index)),
+                                .radius = 3.0f,
+                                .level = LEVELS[round % 4],
+                                .flux_exponent_max = 72};
+            pick_photons(&random, &tree, disc.position, &found);
+            frame f = frame_from_z(disc.normal);
+            surface_region region = {.center = disc.position, .x = f.x, .y = f.y};
+            for (int i = 0; i < SURFACE_REGION_SECTORS; i++)
+                for (int a = 0; a < 2; a++)
+                    region.line[i][a] = round % 5 ? 8.0f * rng_float(&random) - 4.0f : 0.0f;
 
-        /* what the kept ones add up to, in floating point */
-        double flux[3] = {0.0, 0.0, 0.0}, offset[3] = {0.0, 0.0, 0.0};
-        for (uint32_t i = 0; i < kept[0]; i++) {
-            uint32_t index = photon_neighbor_index(n[0][i]), code = photon_block_flux(tree.blocks, index);
-            vec3 off = vec3_sub(photon_block_position(tree.blocks, index), disc.position);
-            offset[0] += (double)off.x, offset[1] += (double)off.y, offset[2] += (double)off.z;
-            for (int c = 0; c < 3; c++)
-                flux[c] += ldexp(code >> (16 - 8 * c) & 255, 32 + flux_exponent(code) - disc.flux_exponent_max);
+            photon_disc_sums sums[2], sums_inside[2];
+            static photon_neighbor doubtful[2][LEAVES * PHOTON_BLOCK_LANES];
+            static bool is_on_level[LEAVES * PHOTON_BLOCK_LANES], is_inside[LEAVES * PHOTON_BLOCK_LANES];
+            for (int k = 0; k < 2; k++) {
+                kept[k] = kernels[k]->sum_on_level(&disc, &found, &sums[k], doubtful[k]);
+                inside[k] = kernels[k]->sum_in_region(&disc, &region, &found, &sums_inside[k]);
+            }
+            assert_int_equal(kept[0], kept[1]);
+            assert_true(kept[0] <= found.count);
+            assert_memory_equal(doubtful[0], doubtful[1], (found.count - kept[0]) * sizeof **doubtful);
+            assert_same_sums(&sums[0], &sums[1]);
+            assert_int_equal(inside[0], inside[1]);
+            assert_same_sums(&sums_inside[0], &sums_inside[1]);
+            if (disc.level == INFINITY)
+                assert_int_equal(kept[0], found.count);
+            doubtful_sum += found.count - kept[0];
+            inside_sum += inside[0];
+            outside_sum += found.count - inside[0];
+
+            /* what the kept ones add up to, in floating point */
+            for (uint32_t i = 0; i < found.leaf_count * PHOTON_BLOCK_LANES; i++) {
+                bool is_found = found.distances_squared[i] <= found.limit;
+                is_on_level[i] = is_found;
+                is_inside[i] =
+                    is_found &&
+                    surface_region_contains(&region, photon_block_position(tree.blocks, photon_found_index(&found, i)));
+            }
+            for (uint32_t i = 0; i < found.count - kept[0]; i++) {
+                assert_true(is_on_level[doubtful[0][i]]);
+                is_on_level[doubtful[0][i]] = false;
+            }
+            check_sums(&disc, &found, is_on_level, kept[0], &sums[0]);
+            check_sums(&disc, &found, is_inside, inside[0], &sums_inside[0]);
         }
-        for (int c = 0; c < 3; c++) {
-            assert_true(fabs((double)sums[0].flux[c] - flux[c]) <= kept[0]); /* rounded down, each */
-            double unit = (double)disc.radius / (double)PHOTON_DISC_OFFSET_UNIT;
-            assert_true(fabs(sums[0].offset[c] * unit - offset[c]) <= (kept[0] + 1e-3) * unit);
-        }
+        free(scratch);
+        photon_tree_reset(&tree);
+        free(photons);
     }
-    assert_true(doubtful_sum > 0);
-    photon_tree_reset(&tree);
-    free(photons);
+    assert_true(doubtful_sum > 0 && inside_sum > 0 && outside_sum > 0);
     test_run_reset(&r);
 }
 
@@ -104,35 +162,50 @@ static int by_value(const void *a, const void *b)
     return x < y ? -1 : x > y;
 }
 
-/* Distances spread evenly, all in one step, all the same, and 0. */
-static void the_nearest_are_selected(void **state)
+/* Distances spread evenly, all nearly the same, all the same, and 0. */
+static void the_nearest_are_kept(void **state)
 {
     (void)state;
+    enum { MOST = LEAVES * PHOTON_BLOCK_LANES };
     const disc_kernels *kernels[] = {&disc_kernels_plain, disc_kernels_best()};
     rng random = test_random(3);
+    const photon_tree tree = {0};
+    photon_neighbor *scratch = malloc(photon_neighbors_capacity(MOST) * sizeof *scratch);
+    assert_non_null(scratch);
     for (int round = 0; round < 2000 / FEWER; round++) {
-        photon_neighbor sorted[MOST], n[MOST + 8];
-        uint32_t count = 1 + (uint32_t)(rng_next(&random) % (MOST - 1)),
-                 wanted = 1 + (uint32_t)(rng_next(&random) % count);
+        static photon_neighbor expected[MOST], kept[MOST];
+        uint32_t leaf_count = 1 + (uint32_t)(rng_next(&random) % LEAVES), count = 0;
         float limit = round % 5 == 4 ? 0.0f : ldexpf(1.0f, round % 60 - 30);
-        for (uint32_t i = 0; i < count; i++) {
-            float d = round % 5 == 3 ? limit : limit * rng_float(&random) * (round % 5 == 2 ? 1e-4f : 1.0f);
-            sorted[i] = photon_neighbor_make(d, i * 7919u);
+        photon_found found;
+        photon_found_init(&found, &tree, MOST, scratch);
+        found.leaf_count = leaf_count;
+        found.limit = limit;
+        static float distances[MOST];
+        for (uint32_t i = 0; i < leaf_count * PHOTON_BLOCK_LANES; i++) {
+            float d = round % 5 == 3 ? limit : limit * 1.2f * rng_float(&random) * (round % 5 == 2 ? 1e-4f : 1.0f);
+            found.leaves[i / PHOTON_BLOCK_LANES] = 3 + 2 * (i / PHOTON_BLOCK_LANES);
+            distances[i] = i % 6 ? d : NAN;
+            if (distances[i] <= limit)
+                expected[count++] = photon_neighbor_make(d, photon_found_index(&found, i));
         }
+        qsort(expected, count, sizeof *expected, by_value);
+        uint32_t wanted = 1 + (uint32_t)(rng_next(&random) % count);
         for (int k = 0; k < 2; k++) {
-            memcpy(n, sorted, sizeof sorted);
-            kernels[k]->select(n, count, wanted, limit);
-            photon_neighbor last = n[wanted - 1];
-            photon_neighbor *expected = malloc(count * sizeof *expected);
-            assert_non_null(expected);
-            memcpy(expected, sorted, count * sizeof *expected);
-            qsort(expected, count, sizeof *expected, by_value);
-            qsort(n, wanted, sizeof *n, by_value);
-            assert_memory_equal(n, expected, wanted * sizeof *n);
-            assert_true(last == expected[wanted - 1]);
-            free(expected);
+            memcpy(found.distances_squared, distances, sizeof distances);
+            found.limit = limit;
+            found.count = count;
+            disc_kernels_keep_nearest(kernels[k], &found, wanted);
+            assert_int_equal(found.count, wanted);
+            assert_true(found.farthest == expected[wanted - 1]);
+            assert_true(found.limit == photon_neighbor_distance_squared(found.farthest));
+            assert_int_equal(kernels[k]->list_between(&found, -1.0f, found.limit, kept), wanted);
+            qsort(kept, wanted, sizeof *kept, by_value);
+            assert_memory_equal(kept, expected, wanted * sizeof *kept);
+            photon_found_forget(&found, found.farthest);
+            assert_int_equal(kernels[k]->list_between(&found, -1.0f, found.limit, kept), wanted - 1);
         }
     }
+    free(scratch);
 }
 
 /* All kernels find the same leaves of every subtree, from points within and without, and leave out none that holds a
@@ -144,7 +217,7 @@ static void leaves_of_subtrees_are_found(void **state)
     test_run r;
     test_run_init(&r, 2);
     photon *photons;
-    photon_tree tree = make_tree(&r, &photons);
+    photon_tree tree = make_tree(&r, true, &photons);
     assert_true(tree.depth > PHOTON_SUBTREE_LEVELS);
     rng random = test_random(4);
     uint32_t base = (1u << (tree.depth - PHOTON_SUBTREE_LEVELS)) - 1, found_sum = 0;
@@ -201,11 +274,12 @@ static void nothing_behind_the_last_leaf_is_found(void **state)
             photon_block_from_records((photon_block *)(void *)p + i, PHOTON_BLOCK_LANES);
         photon_tree tree;
         assert_int_equal(photon_tree_build(&r.run, p, count, 0.0, 1.0, &tree), AG_OK);
+        photon_neighbor *n = malloc(photon_neighbors_capacity(WANTED) * sizeof *n);
+        assert_non_null(n);
         for (int round = 0; round < 200; round++) {
             vec3 at = random_in_box(&random, low, high);
             float radius = 0.2f * rng_float(&random);
             for (int k = 0; k < 2; k++) {
-                photon_neighbor n[2 * WANTED + 64];
                 float other;
                 uint32_t found = disc_kernels_k_nearest(kernels[k], &tree, at, up, 0.5f, radius, WANTED, n, &other),
                          within = 0;
@@ -216,6 +290,7 @@ static void nothing_behind_the_last_leaf_is_found(void **state)
                     assert_true(photon_neighbor_index(n[i]) < count);
             }
         }
+        free(n);
         photon_tree_reset(&tree);
         free(p);
     }
@@ -226,7 +301,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(sums_are_the_same),
-        cmocka_unit_test(the_nearest_are_selected),
+        cmocka_unit_test(the_nearest_are_kept),
         cmocka_unit_test(leaves_of_subtrees_are_found),
         cmocka_unit_test(nothing_behind_the_last_leaf_is_found),
     };

@@ -161,13 +161,15 @@ static void the_radius_is_inclusive(void **state)
     assert_int_equal(photon_tree_build(&r.run, p, 1, 0.0, 1.0, &tree), AG_OK);
     vec3 origin = {0.0f, 0.0f, 0.0f}, up = {0.0f, 0.0f, 1.0f};
     float d;
-    photon_neighbor n[80];
+    photon_neighbor *n = malloc(photon_neighbors_capacity(5) * sizeof *n);
+    assert_non_null(n);
     assert_int_equal(photon_tree_nearest(&tree, origin, up, 0.5f, 5.0f, &d), 0);
     assert_int_equal(photon_tree_nearest(&tree, origin, up, 0.5f, 4.999f, &d), PHOTON_NONE);
     assert_int_equal(photon_tree_k_nearest(&tree, origin, up, 0.5f, 5.0f, 5, n, &d), 1);
     assert_int_equal(photon_tree_k_nearest(&tree, origin, up, 0.5f, 4.999f, 5, n, &d), 0);
     /* and the cosine is not */
     assert_int_equal(photon_tree_nearest(&tree, origin, up, 1.0f, 5.0f, &d), PHOTON_NONE);
+    free(n);
     photon_tree_reset(&tree);
     free(p);
     test_run_reset(&r);
@@ -193,7 +195,8 @@ static void normals_are_tested_inside_the_search(void **state)
     }
     photon_tree tree;
     assert_int_equal(photon_tree_build(&r.run, p, 2 * EACH, 0.0, 1.0, &tree), AG_OK);
-    photon_neighbor n[2 * 50 + 64];
+    photon_neighbor *n = malloc(photon_neighbors_capacity(50) * sizeof *n);
+    assert_non_null(n);
     vec3 up = {0.0f, 0.0f, 1.0f};
     float other;
     uint32_t count = photon_tree_k_nearest(&tree, (vec3){0.05f, 0.05f, 0.0f}, up, 0.5f, 1.0f, 50, n, &other);
@@ -204,6 +207,7 @@ static void normals_are_tested_inside_the_search(void **state)
     float d;
     uint32_t nearest = photon_tree_nearest(&tree, (vec3){0.05f, 0.05f, 0.0f}, up, 0.9f, 1.0f, &d);
     assert_true(nearest != PHOTON_NONE && photon_block_position(tree.blocks, nearest).z > 0.0f);
+    free(n);
     photon_tree_reset(&tree);
     free(p);
     test_run_reset(&r);

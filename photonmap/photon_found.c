@@ -1,0 +1,114 @@
+/* photon_found.c: see photon_found.h.
+ * Threads: see photon_found.h. */
+#include "photon_found.h"
+
+#include "disc_kernels.h"
+
+/* Beside the photons wanted, of which each may lie in a leaf of its own. */
+enum { SPARE_LEAVES = 64, ALIGNMENT = 64 };
+
+/* In turn: neighbours that a selection compares, distances from a cache line on, leaves. */
+static uint32_t neighbors_compared(uint32_t wanted) { return 2 * wanted + 64; }
+
+uint32_t photon_neighbors_capacity(uint32_t wanted)
+{
+    enum { EACH = sizeof(photon_neighbor) };
+    uint32_t leaves = wanted + SPARE_LEAVES, leaf_bytes = PHOTON_BLOCK_LANES * sizeof(float) + sizeof(uint32_t);
+    return neighbors_compared(wanted) + (ALIGNMENT + leaves * leaf_bytes + EACH - 1) / EACH;
+}
+
+void photon_found_init(photon_found *found, const photon_tree *tree, uint32_t wanted, photon_neighbor *scratch)
+{
+    uint32_t leaves = wanted + SPARE_LEAVES, compared = neighbors_compared(wanted);
+    uintptr_t after = (uintptr_t)(scratch + compared), aligned = (after + ALIGNMENT - 1) & ~(uintptr_t)(ALIGNMENT - 1);
+    float *distances = (float *)(void *)((char *)(scratch + compared) + (aligned - after));
+    *found = (photon_found){.blocks = tree->blocks,
+                            .leaves = (uint32_t *)(void *)(distances + (size_t)leaves * PHOTON_BLOCK_LANES),
+                            .distances_squared = distances,
+                            .leaf_capacity = leaves,
+                            .capacity = compared,
+                            .other = INFINITY,
+                            .scratch = scratch};
+}
+
+uint32_t photon_tree_k_nearest(const photon_tree *tree, vec3 position, vec3 normal, float min_cos, float radius,
+                               uint32_t wanted, photon_neighbor *neighbors, float *out_other_squared)
+{
+    return disc_kernels_k_nearest(disc_kernels_best(), tree, position, normal, min_cos, radius, wanted, neighbors,
+                                  out_other_squared);
+}
+
+uint32_t disc_kernels_k_nearest(const disc_kernels *kernels, const photon_tree *tree, vec3 position, vec3 normal,
+                                float min_cos, float radius, uint32_t wanted, photon_neighbor *neighbors,
+                                float *out_other_squared)
+{
+    photon_found found;
+    photon_found_init(&found, tree, wanted, neighbors);
+    disc_kernels_search(kernels, &found, tree, position, normal, min_cos, radius, wanted);
+    *out_other_squared = found.other;
+    uint32_t count = kernels->list_between(&found, -1.0f, found.limit, neighbors), last = count - 1;
+    for (uint32_t i = 0; count == wanted && i < last; i++)
+        if (neighbors[i] == found.farthest) {
+            neighbors[i] = neighbors[last];
+            neighbors[last] = found.farthest;
+        }
+    return count;
+}
+
+/* Squared distances on a surface are spread evenly, so that counting tells where the last one wanted must be, and few
+ * are left to be compared. */
+void disc_kernels_keep_nearest(const disc_kernels *kernels, photon_found *found, uint32_t wanted)
+{
+    enum { COMPARED = 24, ROUNDS = 3, ASIDE = 6 }; /* photons */
+    float low = -1.0f, high = found->limit;
+    uint32_t low_count = 0, high_count = found->count; /* that are no farther */
+    for (int round = 0; round < ROUNDS && high_count - low_count > COMPARED; round++) {
+        float begin = fmaxf(low, 0.0f), each = (high - begin) / (float)(high_count - low_count);
+        float middle = begin + each * ((float)(wanted - low_count) - 0.5f), aside = each * (float)ASIDE;
+        const float most[DISC_COUNTS] = {middle - aside, middle, middle + aside};
+        uint32_t within[DISC_COUNTS];
+        kernels->count_within(found, most, within);
+        for (int i = 0; i < DISC_COUNTS; i++) {
+            if (!(most[i] > low && most[i] < high))
+                continue;
+            if (within[i] >= wanted) {
+                high = most[i];
+                high_count = within[i];
+            } else {
+                low = most[i];
+                low_count = within[i];
+            }
+        }
+    }
+    photon_neighbor *compared = found->scratch;
+    uint32_t count = kernels->list_between(found, low, high, compared), of_these = wanted - low_count;
+    photon_neighbors_quickselect(compared, count, of_these);
+    found->farthest = compared[of_these - 1];
+    found->limit = photon_neighbor_distance_squared(found->farthest);
+    for (uint32_t i = of_these; i < count; i++)
+        if (photon_neighbor_distance_squared(compared[i]) == found->limit)
+            photon_found_forget(found, compared[i]);
+    found->count = wanted;
+}
+
+void photon_found_drop_empty_leaves(photon_found *found)
+{
+    uint32_t left = 0;
+    for (uint32_t i = 0; i < found->leaf_count; i++) {
+        const float *d = found->distances_squared + (size_t)i * PHOTON_BLOCK_LANES;
+        bool has_some = false;
+        for (uint32_t lane = 0; lane < PHOTON_BLOCK_LANES; lane++)
+            has_some = has_some || d[lane] <= found->limit;
+        if (has_some) {
+            memmove(found->distances_squared + (size_t)left * PHOTON_BLOCK_LANES, d, PHOTON_BLOCK_LANES * sizeof *d);
+            found->leaves[left++] = found->leaves[i];
+        }
+    }
+    found->leaf_count = left;
+}
+
+void photon_found_search(photon_found *found, const photon_tree *tree, vec3 position, vec3 normal, float min_cos,
+                         float radius, uint32_t wanted)
+{
+    disc_kernels_search(disc_kernels_best(), found, tree, position, normal, min_cos, radius, wanted);
+}

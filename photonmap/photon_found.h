@@ -1,0 +1,52 @@
+/* photon_found.h: the photons that a search has found, leaf by leaf: the squared distances of a leaf's sixteen photons
+ * side by side, as their block has all else of them. So choosing the nearest and summing a disc read whole vectors of
+ * consecutive memory, and move nothing. Flow: photon_k_nearest -> [here] -> disc_kernels, irradiance_estimate.
+ * Threads: each belongs to one. */
+#ifndef AFTERGLOW_PHOTON_FOUND_H
+#define AFTERGLOW_PHOTON_FOUND_H
+
+#include "photon_tree.h"
+
+typedef struct photon_found {
+    const photon_block *blocks;
+    uint32_t *leaves;         /* [leaf_count] */
+    float *distances_squared; /* [leaf_count][PHOTON_BLOCK_LANES]; of photons that do not count: not a number */
+    uint32_t leaf_count, leaf_capacity;
+    float limit;              /* squared distance: the photons found are those no farther */
+    uint32_t count, capacity; /* of them; capacity - count >= PHOTON_BLOCK_LANES */
+    float other; /* squared distance of the nearest photon whose normal differs but is not about opposite */
+    photon_neighbor farthest; /* the last of those wanted, where all were found */
+    photon_neighbor *scratch; /* [capacity] */
+} photon_found;
+
+/* Borrows scratch memory: photon_neighbors_capacity(wanted). */
+void photon_found_init(photon_found *found, const photon_tree *tree, uint32_t wanted, photon_neighbor *scratch);
+
+/* Finds the `wanted` nearest photons within radius, whose number becomes found->count; `found` is from
+ * photon_found_init for as many. Where all were found, found->farthest is one of them, and found->limit its distance.
+ * found->other is photon_tree_k_nearest's *out_other_squared. */
+void photon_found_search(photon_found *found, const photon_tree *tree, vec3 position, vec3 normal, float min_cos,
+                         float radius, uint32_t wanted);
+
+/* A photon by where it is found: the number of its leaf in `leaves`, times the lanes of a block, and its lane. */
+static inline uint32_t photon_found_index(const photon_found *found, uint32_t slot)
+{
+    return found->leaves[slot / PHOTON_BLOCK_LANES] * PHOTON_BLOCK_LANES + slot % PHOTON_BLOCK_LANES;
+}
+
+/* Takes out a photon. */
+static inline void photon_found_forget_slot(photon_found *found, uint32_t slot)
+{
+    found->distances_squared[slot] = NAN;
+    found->count--;
+}
+
+static inline void photon_found_forget(photon_found *found, photon_neighbor n)
+{
+    uint32_t index = photon_neighbor_index(n), i = 0;
+    while (found->leaves[i] != index / PHOTON_BLOCK_LANES)
+        i++;
+    photon_found_forget_slot(found, i * PHOTON_BLOCK_LANES + index % PHOTON_BLOCK_LANES);
+}
+
+#endif
