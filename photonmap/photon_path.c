@@ -1,12 +1,9 @@
 /* photon_path.c: see photon_path.h. */
 #include "photon_path.h"
 
-#include "material/lambert.h"
-#include "onward_ways.h"
+#include "photon_arrival.h"
 #include "quarter_octave.h"
-#include "rays/transmittance.h"
 #include "scene_extent.h"
-#include "shape/alpha.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -19,10 +16,6 @@ enum { SPLIT_MOST = 4096 };
 static const float GAIN_OF_PART = 8.0f;
 /* The room that a block's first photon makes. */
 enum { PHOTONS_FIRST = 1024 };
-/* How many of the ways on by a surface's gathered lobes are led by importons, where there are any. */
-static const float LED_SHARE = 0.5f;
-/* Of a caustic map's, which come by other ways as well that no importon tells of. */
-static const float CAUSTIC_LED_SHARE = 0.2f;
 /* Random streams, apart from those of the eye. */
 enum { STREAM_GLOBAL = 1, STREAM_CAUSTIC = 2, STREAM_TRIALS = 2 /* added to those */ };
 
@@ -45,19 +38,20 @@ static void count_flux(double entry[3], rgb flux)
     entry[2] += (double)flux.b;
 }
 
-static photon *append_photon(path_block *out)
+/* Makes room for one more photon. Returns false where memory runs out. */
+static bool reserve_photon(path_block *out)
 {
-    if (out->count == out->capacity) {
-        uint32_t capacity = out->capacity ? 2 * out->capacity : PHOTONS_FIRST;
-        photon *larger = realloc(out->photons, capacity * sizeof *larger);
-        if (!larger) {
-            out->out_of_memory = true;
-            return NULL;
-        }
-        out->photons = larger;
-        out->capacity = capacity;
+    if (out->count < out->capacity)
+        return true;
+    uint32_t capacity = out->capacity ? 2 * out->capacity : PHOTONS_FIRST;
+    photon *larger = realloc(out->photons, capacity * sizeof *larger);
+    if (!larger) {
+        out->out_of_memory = true;
+        return false;
     }
-    return &out->photons[out->count++];
+    out->photons = larger;
+    out->capacity = capacity;
+    return true;
 }
 
 /* How probable it is that a photon is stored. Where no light is asked for, those whose paths were picked more often
@@ -84,56 +78,52 @@ static bool keep(photon_tracer *t, const photon_path *path, vec3 position, vec3 
     return is_kept;
 }
 
-/* Where that point of a surface is when the shutter opens; its normal on the side that the path has arrived on. */
-static surface_rest rest_of_arrival(const scene *s, const photon_path *path, const surface_hit *hit)
+/* Counts a photon that a trial would store, and what it is worth. */
+static void value_photon(photon_tracer *t, const photon_path *path, const surface_rest *rest, rgb flux)
 {
-    surface_rest at = {hit->position, hit->geometric_normal, 1.0f};
-    if (hit->instance_index != SCENE_NO_INSTANCE)
-        at = surface_at_opening(s, hit);
-    if (vec3_dot(hit->geometric_normal, path->ray.direction) > 0.0f)
-        at.geometric_normal = vec3_negate(at.geometric_normal);
-    return at;
+    float importance = importance_map_at(t->settings->asked, rest->position, rest->geometric_normal);
+    t->counts->photons++;
+    t->counts->asked += importance > 0.0f;
+    t->counts->stored += (double)keep_probability(path, importance);
+    t->counts->roots += (double)sqrtf(importance);
+    t->counts->importance += (double)importance;
+    t->trial->value += (flux.r + flux.g + flux.b) * sqrtf(importance);
 }
 
-static void store(photon_tracer *t, const photon_path *path, const surface_hit *hit, float arrival_factor)
+static void append_photon(photon_tracer *t, const photon_path *path, const surface_rest *rest, uint64_t key, rgb flux)
 {
-    uint64_t key = hash_combine(path->key, (uint64_t)path->arrivals);
-    rgb flux = path->flux;
     path_block *out = t->out;
-    surface_rest at = rest_of_arrival(t->s, path, hit);
-    vec3 normal = at.geometric_normal;
-    float alpha = 1.0f;
-    if (!shape_is_opaque(&t->s->shapes[hit->shape_index]))
-        alpha = alpha_at_hit(t->s, hit);
-    flux = rgb_scale(flux, alpha > 0.0f ? arrival_factor * at.area_ratio / alpha : 0.0f);
-    if (t->trial) {
-        float importance = importance_map_at(t->settings->asked, at.position, normal);
-        t->counts->photons++;
-        t->counts->asked += importance > 0.0f;
-        t->counts->stored += (double)keep_probability(path, importance);
-        t->counts->roots += (double)sqrtf(importance);
-        t->counts->importance += (double)importance;
-        t->trial->value += (flux.r + flux.g + flux.b) * sqrtf(importance);
-        return;
-    }
-    count_flux(out->balance.arrived, flux);
-    if (!keep(t, path, at.position, normal, key, &flux))
-        return;
     if (out->count == t->limit) {
         count_flux(out->balance.cut, flux);
         return;
     }
-    photon *p = append_photon(out);
-    if (!p)
+    if (!reserve_photon(out))
         return;
-    p->position[0] = at.position.x;
-    p->position[1] = at.position.y;
-    p->position[2] = at.position.z;
+    photon *p = &out->photons[out->count++];
+    p->position[0] = rest->position.x;
+    p->position[1] = rest->position.y;
+    p->position[2] = rest->position.z;
     p->flux = flux_encode(flux, key);
     p->direction = arrival_encode(path->ray.direction, path->is_diffuse);
-    p->normal = direction_encode(normal);
+    p->normal = direction_encode(rest->geometric_normal);
     memset(&p->slot, 0, sizeof p->slot);
     count_flux(out->balance.stored, flux_decode(p->flux));
+}
+
+/* Stores the photon of an arrival, or in a trial values it. arrival_factor: see photon_arrival_stores. */
+static void store(photon_tracer *t, const photon_path *path, const photon_arrival *at, float arrival_factor)
+{
+    uint64_t key = hash_combine(path->key, (uint64_t)path->arrivals);
+    surface_rest rest = photon_arrival_rest(t->s, at);
+    float alpha = photon_arrival_alpha(t->s, at);
+    rgb flux = rgb_scale(path->flux, alpha > 0.0f ? arrival_factor * rest.area_ratio / alpha : 0.0f);
+    if (t->trial) {
+        value_photon(t, path, &rest, flux);
+        return;
+    }
+    count_flux(t->out->balance.arrived, flux);
+    if (keep(t, path, rest.position, rest.geometric_normal, key, &flux))
+        append_photon(t, path, &rest, key, flux);
 }
 
 /* Media absorb their share of a path's flux; roulette then keeps its flux about constant, so that no photons are spent
@@ -199,127 +189,13 @@ static bool begin_path(photon_tracer *t, uint64_t number, photon_path *out_path)
     return true;
 }
 
-/* The surface that a path has arrived at. */
-typedef struct arrival_surface {
-    float led_share;   /* of the ways on, that follow: */
-    onward_lead lead;  /* what importons tell, where led_share > 0 */
-    const rgb *albedo; /* of a Lambertian surface; else NULL, and: */
-    bsdf scattering;
-} arrival_surface;
-
-/* Of the ways on that a map's paths go: of those by diffuse lobes, or of a caustic map of all, where any of its lobes
- * is rough. */
-static float led_share(const arrival_surface *m, photon_kind kind)
-{
-    if (m->albedo)
-        return kind == PHOTON_GLOBAL ? LED_SHARE : 0.0f;
-    if (kind == PHOTON_GLOBAL)
-        return LED_SHARE * bsdf_probability(&m->scattering, BSDF_GATHERED);
-    return bsdf_is_sampled_from_light(&m->scattering, BSDF_TRACED) ? CAUSTIC_LED_SHARE : 0.0f;
-}
-
-static void arrival_surface_find(const photon_tracer *t, const photon_path *path, const surface_hit *hit,
-                                 arrival_surface *out_surface)
-{
-    const photon_tracing_settings *settings = t->settings;
-    vec3 back = vec3_negate(path->ray.direction);
-    out_surface->led_share = 0.0f;
-    out_surface->albedo = lambert_albedo(t->s, hit);
-    if (!out_surface->albedo)
-        bsdf_init(t->s, hit, back, &out_surface->scattering);
-    float share = settings->ways ? led_share(out_surface, settings->kind) : 0.0f;
-    if (!(share > 0.0f) || !onward_ways_find(settings->ways, rest_of_arrival(t->s, path, hit).position,
-                                             vec3_face_forward(hit->geometric_normal, back), &out_surface->lead))
-        return;
-    /* histograms are too coarse for what rough metal or a coat reflects */
-    if (settings->kind == PHOTON_GLOBAL || out_surface->lead.cone_count > 0)
-        out_surface->led_share = share;
-}
-
-static bool arrival_surface_has(const arrival_surface *m, bsdf_lobes lobes)
-{
-    return m->albedo ? (lobes & BSDF_GATHERED) != 0 : bsdf_has(&m->scattering, lobes);
-}
-
-/* Returns whether photons are stored at a hit, on surfaces that gather, and writes the factor of their flux. */
-static bool arrival_surface_stores(const scene *s, const surface_hit *hit, vec3 arrived, const arrival_surface *m,
-                                   float *out_factor)
-{
-    if (m->albedo) {
-        *out_factor = lambert_arrival_factor(hit, arrived);
-        return true;
-    }
-    if (!bsdf_has(&m->scattering, BSDF_GATHERED))
-        return bsdf_arrival_factor_beside(s, hit, &m->scattering, out_factor);
-    *out_factor = bsdf_arrival_factor(&m->scattering);
-    return true;
-}
-
-/* Sets all of the sample. false: absorbed. */
-static bool arrival_surface_sample(const arrival_surface *m, const surface_hit *hit, vec3 arrived, bsdf_lobes lobes,
-                                   float u_lobe, vec2 u, bsdf_sample *out_next)
-{
-    float correction;
-    if (!m->albedo)
-        return bsdf_sample_direction(&m->scattering, lobes, BSDF_FLUX, u_lobe, u, out_next);
-    if (!lambert_sample_flux(hit, arrived, u, &out_next->direction, &correction))
-        return false;
-    out_next->weight = rgb_scale(*m->albedo, correction);
-    out_next->pdf_solid_angle = fabsf(vec3_dot(out_next->direction, hit->geometric_normal)) * AG_INV_PI;
-    out_next->group = BSDF_GATHERED;
-    out_next->is_delta = out_next->is_straight = false;
-    return true;
-}
-
-/* Evaluates the surface's own density and weight of a direction that was sampled otherwise. */
-static void arrival_surface_evaluate(const arrival_surface *m, const surface_hit *hit, vec3 arrived, bsdf_lobes lobes,
-                                     vec3 direction, bsdf_sample *out_next)
-{
-    *out_next = (bsdf_sample){.direction = direction, .group = lobes == BSDF_TRACED ? BSDF_TRACED : BSDF_GATHERED};
-    if (m->albedo) {
-        vec3 normal = vec3_face_forward(hit->geometric_normal, vec3_negate(arrived));
-        out_next->weight = rgb_scale(*m->albedo, lambert_arrival_factor(hit, arrived));
-        out_next->pdf_solid_angle = fmaxf(vec3_dot(direction, normal), 0.0f) * AG_INV_PI;
-        return;
-    }
-    float pdf = bsdf_pdf(&m->scattering, lobes, BSDF_FLUX, direction);
-    rgb value = bsdf_evaluate(&m->scattering, lobes, BSDF_FLUX, direction);
-    out_next->pdf_solid_angle = pdf;
-    out_next->weight = rgb_scale(value, 1.0f / pdf);
-    if (!(pdf > 0.0f) || !rgb_is_finite(out_next->weight))
-        out_next->weight = rgb_gray(0.0f), out_next->pdf_solid_angle = 0.0f;
-}
-
-/* Samples the direction in which flux goes on: by the surface, or by the importons there. The weight is that of
- * sampling by the surface alone; *out_led is the ratio of that density to the mixture's, below 1 / (1 - LED_SHARE); 0:
- * the direction carries nothing. Returns false where the flux is absorbed. */
-static bool sample_way_on(const arrival_surface *m, const surface_hit *hit, vec3 arrived, bsdf_lobes lobes,
-                          float u_lobe, vec2 u, bsdf_sample *out_next, float *out_led)
-{
-    float share = m->led_share;
-    *out_led = 1.0f;
-    if (!(share > 0.0f))
-        return arrival_surface_sample(m, hit, arrived, lobes, u_lobe, u, out_next);
-    if (u_lobe < share) {
-        arrival_surface_evaluate(m, hit, arrived, lobes, onward_lead_sample(&m->lead, u), out_next);
-    } else {
-        u_lobe = float_below_one((u_lobe - share) / (1.0f - share));
-        if (!arrival_surface_sample(m, hit, arrived, lobes, u_lobe, u, out_next))
-            return false;
-    }
-    float by_lead = out_next->is_delta ? 0.0f : onward_lead_density(&m->lead, out_next->direction);
-    float by_surface = out_next->is_delta ? 1.0f : out_next->pdf_solid_angle;
-    *out_led = by_surface > 0.0f ? by_surface / ((1.0f - share) * by_surface + share * by_lead) : 0.0f;
-    return true;
-}
-
-/* Sends the path on from where its ray has arrived. false: it ends there. */
-static bool scatter(photon_tracer *t, photon_path *path, const surface_hit *hit, const arrival_surface *m)
+/* Sends the path on from where it has arrived. Returns false where it ends. */
+static bool scatter(photon_tracer *t, photon_path *path, const photon_arrival *at)
 {
     const photon_tracing_settings *settings = t->settings;
     energy_balance *balance = &t->out->balance;
     rgb flux = path->flux;
-    bool may_go_straight = settings->panes_are_direct && !m->albedo && m->scattering.is_pane;
+    bool may_go_straight = settings->panes_are_direct && photon_arrival_is_pane(at);
     bool is_last = path->scatterings >= settings->max_scatterings;
     if (path->arrivals >= SCATTERING_CAP || (is_last && !may_go_straight)) {
         count_flux(balance->truncated, flux);
@@ -328,7 +204,7 @@ static bool scatter(photon_tracer *t, photon_path *path, const surface_hit *hit,
 
     /* a caustic map follows traced lobes alone */
     bsdf_lobes lobes = settings->kind == PHOTON_GLOBAL ? BSDF_ALL : BSDF_TRACED;
-    if (!arrival_surface_has(m, lobes)) {
+    if (!photon_arrival_has(at, lobes)) {
         count_flux(balance->lost, flux);
         return false;
     }
@@ -336,7 +212,7 @@ static bool scatter(photon_tracer *t, photon_path *path, const surface_hit *hit,
     vec2 u = rng_vec2(&path->random);
     bsdf_sample next;
     float led;
-    if (!sample_way_on(m, hit, path->ray.direction, lobes, u_lobe, u, &next, &led)) {
+    if (!photon_arrival_sample(at, lobes, u_lobe, u, &next, &led)) {
         count_flux(balance->absorbed, flux);
         return false;
     }
@@ -360,7 +236,8 @@ static bool scatter(photon_tracer *t, photon_path *path, const surface_hit *hit,
     count_flux(balance->gained, rgb_sub(path->flux, scattered));
     if (!(led > 0.0f))
         return false;
-    path->ray = goes_straight ? scene_ray_continue(hit, &path->ray) : surface_ray(hit, path->ray, next.direction);
+    path->ray = goes_straight ? photon_arrival_ray_straight(at, &path->ray)
+                              : photon_arrival_ray(at, &path->ray, next.direction);
     if (next.group == BSDF_GATHERED && settings->filters_textures)
         path->ray.cone.spread = RAY_CONE_DIFFUSE_SPREAD;
     path->scatterings += !goes_straight;
@@ -372,37 +249,35 @@ static bool scatter(photon_tracer *t, photon_path *path, const surface_hit *hit,
 /* Returns the root of the mean square of the importance that a path's flux has, by the lobes that may split it; 0: it
  * is not split. Mirrors would send all parts in one direction. Where few paths arrive it is the root of their share;
  * where paths are guided, more arrive, with less flux each. */
-static float root_of_onward_importance(const photon_tracer *t, const photon_path *path, const surface_hit *hit,
-                                       const arrival_surface *m)
+static float root_of_onward_importance(const photon_tracer *t, const photon_arrival *at)
 {
     const photon_tracing_settings *settings = t->settings;
     if (settings->kind == PHOTON_CAUSTIC)
-        return !m->albedo && bsdf_is_sampled_from_light(&m->scattering, BSDF_TRACED) ? settings->caustic_root : 0.0f;
-    if (!arrival_surface_has(m, BSDF_GATHERED))
+        return photon_arrival_is_rough(at) ? settings->caustic_root : 0.0f;
+    if (!photon_arrival_has(at, BSDF_GATHERED))
         return 0.0f;
-    surface_rest at = rest_of_arrival(t->s, path, hit);
-    float importance = importance_map_at(settings->onward, at.position, at.geometric_normal);
-    if (m->led_share > 0.0f)
-        importance /= fmaxf(m->led_share * onward_lead_gain(&m->lead), 1.0f);
+    surface_rest rest = photon_arrival_rest(t->s, at);
+    float importance = importance_map_at(settings->onward, rest.position, rest.geometric_normal);
+    if (at->led_share > 0.0f)
+        importance /= fmaxf(at->led_share * onward_lead_gain(&at->lead), 1.0f);
     return sqrtf(importance);
 }
 
 /* Returns the number of parts into which a path is split before it is scattered. In proportion to its flux and to the
  * root of the share of it that arrives where light is requested, the variance is least for the total number of
  * parts. */
-static uint32_t count_parts(const photon_tracer *t, const photon_path *path, const surface_hit *hit,
-                            const arrival_surface *m)
+static uint32_t count_parts(const photon_tracer *t, const photon_path *path, const photon_arrival *at)
 {
     const photon_tracing_settings *settings = t->settings;
     bool is_last = path->scatterings >= settings->max_scatterings || path->arrivals >= SCATTERING_CAP;
     if (is_last)
         return 1;
-    float gain = m->albedo ? 1.0f : bsdf_flux_gain(&m->scattering), parts = gain / GAIN_OF_PART;
+    float gain = photon_arrival_gain(at), parts = gain / GAIN_OF_PART;
     if (settings->split_above > 0.0f) {
         float flux = gain * (path->flux.r + path->flux.g + path->flux.b);
         if (t->trial)
             flux /= t->trial->density;
-        parts = fmaxf(parts, flux * root_of_onward_importance(t, path, hit, m) / settings->split_above);
+        parts = fmaxf(parts, flux * root_of_onward_importance(t, at) / settings->split_above);
     }
     float most = SPLIT_MOST * path->share;
     return !(parts > 1.0f) ? 1 : (uint32_t)fmaxf(fminf(parts + 0.5f, most), 1.0f);
@@ -424,26 +299,23 @@ static photon_path part_of_path(const photon_path *path, uint32_t part, uint32_t
 
 static void follow_path(photon_tracer *t, photon_path *path);
 
-/* Stores a photon where the path's ray has arrived, and sends the path on, or its parts. false: it ends there. */
-static bool arrive(photon_tracer *t, photon_path *path, const surface_hit *hit)
+/* Stores a photon where the path has arrived, and sends the path on, or its parts. Returns false where it ends. */
+static bool arrive(photon_tracer *t, photon_path *path, photon_arrival *at)
 {
-    vec3 arrived = path->ray.direction;
-    arrival_surface m;
     float factor;
-    arrival_surface_find(t, path, hit, &m);
-    if ((t->settings->kind == PHOTON_GLOBAL || path->scatterings > 0) &&
-        arrival_surface_stores(t->s, hit, arrived, &m, &factor))
-        store(t, path, hit, factor);
-    uint32_t parts = count_parts(t, path, hit, &m);
+    photon_arrival_complete(t->s, t->settings, at);
+    if ((t->settings->kind == PHOTON_GLOBAL || path->scatterings > 0) && photon_arrival_stores(t->s, at, &factor))
+        store(t, path, at, factor);
+    uint32_t parts = count_parts(t, path, at);
     t->out->parts += parts - 1;
     for (uint32_t i = 1; i < parts; i++) {
         photon_path part = part_of_path(path, i, parts);
-        if (scatter(t, &part, hit, &m))
+        if (scatter(t, &part, at))
             follow_path(t, &part);
     }
     if (parts > 1)
         *path = part_of_path(path, 0, parts);
-    return scatter(t, path, hit, &m);
+    return scatter(t, path, at);
 }
 
 static void follow_path(photon_tracer *t, photon_path *path)
@@ -451,19 +323,15 @@ static void follow_path(photon_tracer *t, photon_path *path)
     energy_balance *balance = &t->out->balance;
     bool goes_on = true;
     while (goes_on) {
-        surface_hit hit;
+        photon_arrival at;
         rgb transmittance;
         t->out->rays++;
-        bool is_met = transmittance_intersect(t->s, &path->ray, &t->out->rays_cut, &hit, &transmittance);
+        bool is_met = photon_arrival_meet(t->s, &path->ray, &t->out->rays_cut, &at, &transmittance);
         if (!pass_media(balance, transmittance, &path->random, &path->flux))
             return;
         if (!is_met)
             count_flux(balance->escaped, path->flux);
-        if (is_met && ray_cone_is_wide(&path->ray.cone)) {
-            path->ray.cone = ray_cone_at(&path->ray.cone, hit.distance);
-            hit.footprint = ray_cone_footprint(&path->ray.cone, path->ray.direction);
-        }
-        goes_on = is_met && arrive(t, path, &hit);
+        goes_on = is_met && arrive(t, path, &at);
     }
 }
 

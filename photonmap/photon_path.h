@@ -1,5 +1,5 @@
 /* photon_path.h: traces one photon path: emission, scattering, splitting, and storing photons at arrivals.
- * Flow: photon_tracing -> [here] -> transmittance, bsdf. Threads: one for each block. */
+ * Flow: photon_tracing -> [here] -> photon_arrival. Threads: one for each block. */
 #ifndef AFTERGLOW_PHOTON_PATH_H
 #define AFTERGLOW_PHOTON_PATH_H
 

@@ -1,0 +1,112 @@
+/* photon_arrival.c: see photon_arrival.h. */
+#include "photon_arrival.h"
+
+#include "material/lambert.h"
+
+/* The share of ways on by a surface's diffuse lobes that importons lead, where there are any. */
+static const float LED_SHARE = 0.5f;
+/* The same of a caustic map's, which come by other ways as well that no importon tells of. */
+static const float CAUSTIC_LED_SHARE = 0.2f;
+
+bool photon_arrival_meet(const scene *s, scene_ray *in_out_ray, uint64_t *in_out_cut, photon_arrival *out,
+                         rgb *out_transmittance)
+{
+    scene_ray *ray = in_out_ray;
+    if (!transmittance_intersect(s, ray, in_out_cut, &out->hit, out_transmittance))
+        return false;
+    out->arrived = ray->direction;
+    if (ray_cone_is_wide(&ray->cone)) {
+        ray->cone = ray_cone_at(&ray->cone, out->hit.distance);
+        out->hit.footprint = ray_cone_footprint(&ray->cone, ray->direction);
+    }
+    return true;
+}
+
+/* Returns the share of a map's ways on that importons lead: of those by diffuse lobes; of a caustic map's all, where
+ * any of its lobes is rough. */
+static float led_share(const photon_arrival *at, photon_kind kind)
+{
+    if (kind == PHOTON_CAUSTIC)
+        return photon_arrival_is_rough(at) ? CAUSTIC_LED_SHARE : 0.0f;
+    return at->albedo ? LED_SHARE : LED_SHARE * bsdf_probability(&at->scattering, BSDF_GATHERED);
+}
+
+void photon_arrival_complete(const scene *s, const photon_tracing_settings *settings, photon_arrival *at)
+{
+    vec3 back = vec3_negate(at->arrived);
+    at->led_share = 0.0f;
+    at->albedo = lambert_albedo(s, &at->hit);
+    if (!at->albedo)
+        bsdf_init(s, &at->hit, back, &at->scattering);
+    float share = settings->ways ? led_share(at, settings->kind) : 0.0f;
+    if (!(share > 0.0f) || !onward_ways_find(settings->ways, photon_arrival_rest(s, at).position,
+                                             vec3_face_forward(at->hit.geometric_normal, back), &at->lead))
+        return;
+    /* histograms are too coarse for what rough metal or a coat reflects */
+    if (settings->kind == PHOTON_GLOBAL || at->lead.cone_count > 0)
+        at->led_share = share;
+}
+
+bool photon_arrival_stores(const scene *s, const photon_arrival *at, float *out_factor)
+{
+    if (at->albedo)
+        *out_factor = lambert_arrival_factor(&at->hit, at->arrived);
+    else if (bsdf_has(&at->scattering, BSDF_GATHERED))
+        *out_factor = bsdf_arrival_factor(&at->scattering);
+    else
+        return bsdf_arrival_factor_beside(s, &at->hit, &at->scattering, out_factor);
+    return true;
+}
+
+/* Samples the surface's own ways on. Sets all of the sample. Returns false where the flux is absorbed. */
+static bool sample_surface(const photon_arrival *at, bsdf_lobes lobes, float u_lobe, vec2 u, bsdf_sample *out_next)
+{
+    float correction;
+    if (!at->albedo)
+        return bsdf_sample_direction(&at->scattering, lobes, BSDF_FLUX, u_lobe, u, out_next);
+    if (!lambert_sample_flux(&at->hit, at->arrived, u, &out_next->direction, &correction))
+        return false;
+    out_next->weight = rgb_scale(*at->albedo, correction);
+    out_next->pdf_solid_angle = fabsf(vec3_dot(out_next->direction, at->hit.geometric_normal)) * AG_INV_PI;
+    out_next->group = BSDF_GATHERED;
+    out_next->is_delta = out_next->is_straight = false;
+    return true;
+}
+
+/* Evaluates the surface's own density and weight of a direction that was sampled otherwise. */
+static void evaluate_surface(const photon_arrival *at, bsdf_lobes lobes, vec3 direction, bsdf_sample *out_next)
+{
+    *out_next = (bsdf_sample){.direction = direction, .group = lobes == BSDF_TRACED ? BSDF_TRACED : BSDF_GATHERED};
+    if (at->albedo) {
+        vec3 normal = vec3_face_forward(at->hit.geometric_normal, vec3_negate(at->arrived));
+        out_next->weight = rgb_scale(*at->albedo, lambert_arrival_factor(&at->hit, at->arrived));
+        out_next->pdf_solid_angle = fmaxf(vec3_dot(direction, normal), 0.0f) * AG_INV_PI;
+        return;
+    }
+    float pdf = bsdf_pdf(&at->scattering, lobes, BSDF_FLUX, direction);
+    rgb value = bsdf_evaluate(&at->scattering, lobes, BSDF_FLUX, direction);
+    out_next->pdf_solid_angle = pdf;
+    out_next->weight = rgb_scale(value, 1.0f / pdf);
+    if (!(pdf > 0.0f) || !rgb_is_finite(out_next->weight))
+        out_next->weight = rgb_gray(0.0f), out_next->pdf_solid_angle = 0.0f;
+}
+
+bool photon_arrival_sample(const photon_arrival *at, bsdf_lobes lobes, float u_lobe, vec2 u, bsdf_sample *out_next,
+                           float *out_led)
+{
+    float share = at->led_share;
+    *out_led = 1.0f;
+    if (!(share > 0.0f))
+        return sample_surface(at, lobes, u_lobe, u, out_next);
+    if (u_lobe < share) {
+        evaluate_surface(at, lobes, onward_lead_sample(&at->lead, u), out_next);
+    } else {
+        u_lobe = float_below_one((u_lobe - share) / (1.0f - share));
+        if (!sample_surface(at, lobes, u_lobe, u, out_next))
+            return false;
+    }
+    float by_lead = out_next->is_delta ? 0.0f : onward_lead_density(&at->lead, out_next->direction);
+    float by_surface = out_next->is_delta ? 1.0f : out_next->pdf_solid_angle;
+    *out_led = by_surface > 0.0f ? by_surface / ((1.0f - share) * by_surface + share * by_lead) : 0.0f;
+    return true;
+}
