@@ -322,12 +322,25 @@ static void find_irradiance_photons(const photon_map *map, const irradiance_quer
     }
 }
 
+/* Prefetches what answer_by_word reads. */
+static void prefetch_answer(const photon_map *map, const irradiance_query *query, uint32_t irradiance_photon)
+{
+    __builtin_prefetch(query);
+    if (irradiance_photon == PHOTON_NONE)
+        return;
+    const photon_block *b = &map->irradiance_photons.blocks[irradiance_photon / PHOTON_BLOCK_LANES];
+    for (int a = 0; a < 3; a++)
+        __builtin_prefetch(b->position[a]);
+    __builtin_prefetch(b->flux);
+    __builtin_prefetch(photon_map_slot(map, irradiance_photon));
+}
+
 /* In three sweeps, each of which has the processor's caches to itself: looking up, computing what nobody has claimed,
  * and reading. */
 void irradiance_cache_get_many(irradiance_cache *cache, const run_context *run, const irradiance_query *queries,
                                uint32_t count, unsigned worker_index, rgb *out_irradiance, bool *out_holds)
 {
-    enum { CANCEL_EVERY = 16 };
+    enum { CANCEL_EVERY = 16, AHEAD = 8 };
     const photon_map *map = cache->map;
     irradiance_counters *counters = &cache->counters[worker_index];
     uint64_t *order = put_in_order(map, &cache->scratch[worker_index], queries, count);
@@ -351,6 +364,8 @@ void irradiance_cache_get_many(irradiance_cache *cache, const run_context *run, 
     uint32_t waiting = 0;
     for (uint32_t k = 0; k < count; k++) {
         uint32_t i = (uint32_t)order[k], irradiance_photon = (uint32_t)(order[k] >> 32);
+        if (k + AHEAD < count)
+            prefetch_answer(map, &queries[(uint32_t)order[k + AHEAD]], (uint32_t)(order[k + AHEAD] >> 32));
         if (irradiance_photon == PHOTON_NONE)
             continue;
         uint32_t word = irradiance_slot_read(photon_map_slot(map, irradiance_photon));
