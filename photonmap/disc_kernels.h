@@ -104,7 +104,7 @@ const disc_kernels *disc_kernels_best(void);
 
 /* photon_found_search and photon_tree_k_nearest with given kernels. */
 void disc_kernels_search(const disc_kernels *kernels, photon_found *found, const photon_tree *tree, vec3 position,
-                         vec3 normal, float min_cos, float radius, uint32_t wanted);
+                         vec3 normal, float min_cos, float radius, uint32_t wanted, photon_search_hint *in_out_hint);
 uint32_t disc_kernels_k_nearest(const disc_kernels *kernels, const photon_tree *tree, vec3 position, vec3 normal,
                                 float min_cos, float radius, uint32_t wanted, photon_neighbor *neighbors,
                                 float *out_other_squared);

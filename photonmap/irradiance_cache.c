@@ -65,16 +65,18 @@ void irradiance_cache_reset(irradiance_cache *cache)
     *cache = (irradiance_cache){0};
 }
 
-/* out_reach_squared may be NULL. */
-static irradiance_extent estimate(irradiance_cache *cache, vec3 position, vec3 normal, unsigned worker_index,
-                                  rgb *out_irradiance, float *out_reach_squared)
+/* leaf: that of the map's tree which has a photon there, or PHOTON_NONE. out_reach_squared may be NULL. */
+static irradiance_extent estimate(irradiance_cache *cache, uint32_t leaf, vec3 position, vec3 normal,
+                                  unsigned worker_index, rgb *out_irradiance, float *out_reach_squared)
 {
     irradiance_counters *counters = &cache->counters[worker_index];
-    photon_neighbor *scratch = cache->scratch[worker_index].neighbors;
+    irradiance_scratch *scratch = &cache->scratch[worker_index];
+    scratch->hint.leaf = leaf;
     bool is_timed = (counters->computed + counters->uncached) % TIMED_EVERY == 0;
     double begin = is_timed ? clock_thread_cpu_seconds() : 0.0;
-    irradiance_extent extent = irradiance_estimate_find_reach(cache->map, position, normal, scratch, &counters->rays,
-                                                              out_irradiance, out_reach_squared);
+    irradiance_extent extent =
+        irradiance_estimate_find_reach(cache->map, position, normal, scratch->neighbors, &scratch->hint,
+                                       &counters->rays, out_irradiance, out_reach_squared);
     if (is_timed) {
         counters->timed_seconds += clock_thread_cpu_seconds() - begin;
         counters->timed++;
@@ -86,7 +88,8 @@ static irradiance_extent estimate(irradiance_cache *cache, vec3 position, vec3 n
 static bool estimate_at_point(irradiance_cache *cache, vec3 position, vec3 normal, unsigned worker_index,
                               rgb *out_irradiance)
 {
-    bool holds = estimate(cache, position, normal, worker_index, out_irradiance, NULL) != IRRADIANCE_HOLDS_NOWHERE;
+    bool holds =
+        estimate(cache, PHOTON_NONE, position, normal, worker_index, out_irradiance, NULL) != IRRADIANCE_HOLDS_NOWHERE;
     cache->counters[worker_index].uncached++;
     return holds;
 }
@@ -119,9 +122,10 @@ static uint32_t compute(irradiance_cache *cache, uint32_t index, uint32_t claime
     const photon_map *map = cache->map;
     const photon_block *blocks = map->irradiance_photons.blocks;
     rgb irradiance;
-    irradiance_extent extent =
-        estimate(cache, photon_block_position(blocks, index), direction_decode(photon_block_normal(blocks, index)),
-                 worker_index, &irradiance, map->reaches ? &map->reaches[index] : NULL);
+    uint32_t leaf = photon_map_all_have_irradiance(map) ? index / PHOTON_BLOCK_LANES : PHOTON_NONE;
+    irradiance_extent extent = estimate(cache, leaf, photon_block_position(blocks, index),
+                                        direction_decode(photon_block_normal(blocks, index)), worker_index, &irradiance,
+                                        map->reaches ? &map->reaches[index] : NULL);
     uint32_t word = irradiance_word(IRRADIANCE_READY, PHOTON_NO_IRRADIANCE);
     if (extent != IRRADIANCE_HOLDS_NOWHERE)
         word = irradiance_word(extent == IRRADIANCE_HOLDS_IN_SIGHT ? IRRADIANCE_READY_IN_SIGHT : IRRADIANCE_READY,

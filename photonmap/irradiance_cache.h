@@ -41,6 +41,7 @@ typedef struct irradiance_counters {
  * them. */
 typedef struct irradiance_scratch {
     photon_neighbor *neighbors;
+    photon_search_hint hint;
     uint32_t *leaves;   /* [IRRADIANCE_BATCH_MAX] */
     uint64_t *order[2]; /* the same, from one to the other while it is sorted */
 } irradiance_scratch;

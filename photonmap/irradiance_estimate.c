@@ -150,12 +150,12 @@ static float reach_of(const photon_map *map, const photon_found *found)
 irradiance_extent irradiance_estimate_find(const photon_map *map, vec3 position, vec3 normal, photon_neighbor *scratch,
                                            uint64_t *in_out_rays, rgb *out_irradiance)
 {
-    return irradiance_estimate_find_reach(map, position, normal, scratch, in_out_rays, out_irradiance, NULL);
+    return irradiance_estimate_find_reach(map, position, normal, scratch, NULL, in_out_rays, out_irradiance, NULL);
 }
 
 irradiance_extent irradiance_estimate_find_reach(const photon_map *map, vec3 position, vec3 normal,
-                                                 photon_neighbor *scratch, uint64_t *in_out_rays, rgb *out_irradiance,
-                                                 float *out_reach_squared)
+                                                 photon_neighbor *scratch, photon_search_hint *in_out_hint,
+                                                 uint64_t *in_out_rays, rgb *out_irradiance, float *out_reach_squared)
 {
     *out_irradiance = rgb_gray(0.0f);
     if (map->set.count == 0)
@@ -164,7 +164,8 @@ irradiance_extent irradiance_estimate_find_reach(const photon_map *map, vec3 pos
     const disc_kernels *kernels = disc_kernels_best();
     photon_found found;
     photon_found_init(&found, &map->tree, wanted, scratch);
-    photon_found_search(&found, &map->tree, position, normal, PHOTON_ESTIMATE_MIN_COS, map->max_radius, wanted);
+    photon_found_search(&found, &map->tree, position, normal, PHOTON_ESTIMATE_MIN_COS, map->max_radius, wanted,
+                        in_out_hint);
     if (out_reach_squared)
         *out_reach_squared = reach_of(map, &found);
     const bool has_next = found.count == wanted;

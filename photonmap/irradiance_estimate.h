@@ -5,6 +5,7 @@
 #ifndef AFTERGLOW_IRRADIANCE_ESTIMATE_H
 #define AFTERGLOW_IRRADIANCE_ESTIMATE_H
 
+#include "photon_found.h"
 #include "photon_map.h"
 
 /* The points at which an estimate holds, among those whose nearest photon is the estimate's. */
@@ -35,10 +36,10 @@ irradiance_extent irradiance_estimate_find(const photon_map *map, vec3 position,
  * photon, or of the largest disc; where that is NULL, nothing is told. Photons that lie farther away make no difference
  * to the bits of extent and irradiance, nor do those that face the other way (photon_changes.h), nor does geometry
  * beyond IRRADIANCE_REACH_OF_RAYS times that radius. 0: that is not so, for the k-th and the next one are equally far,
- * or the disc was as small as can be. */
+ * or the disc was as small as can be. in_out_hint may be NULL. */
 irradiance_extent irradiance_estimate_find_reach(const photon_map *map, vec3 position, vec3 normal,
-                                                 photon_neighbor *scratch, uint64_t *in_out_rays, rgb *out_irradiance,
-                                                 float *out_reach_squared);
+                                                 photon_neighbor *scratch, photon_search_hint *in_out_hint,
+                                                 uint64_t *in_out_rays, rgb *out_irradiance, float *out_reach_squared);
 
 /* All rays of an estimate end within 1.2 times its radius; the rest is for rounding. */
 #define IRRADIANCE_REACH_OF_RAYS 1.5f

@@ -44,7 +44,7 @@ uint32_t disc_kernels_k_nearest(const disc_kernels *kernels, const photon_tree *
 {
     photon_found found;
     photon_found_init(&found, tree, wanted, neighbors);
-    disc_kernels_search(kernels, &found, tree, position, normal, min_cos, radius, wanted);
+    disc_kernels_search(kernels, &found, tree, position, normal, min_cos, radius, wanted, NULL);
     *out_other_squared = found.other;
     uint32_t count = kernels->list_between(&found, -1.0f, found.limit, neighbors), last = count - 1;
     for (uint32_t i = 0; count == wanted && i < last; i++)
@@ -108,7 +108,7 @@ void photon_found_drop_empty_leaves(photon_found *found)
 }
 
 void photon_found_search(photon_found *found, const photon_tree *tree, vec3 position, vec3 normal, float min_cos,
-                         float radius, uint32_t wanted)
+                         float radius, uint32_t wanted, photon_search_hint *in_out_hint)
 {
-    disc_kernels_search(disc_kernels_best(), found, tree, position, normal, min_cos, radius, wanted);
+    disc_kernels_search(disc_kernels_best(), found, tree, position, normal, min_cos, radius, wanted, in_out_hint);
 }

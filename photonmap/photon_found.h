@@ -19,14 +19,21 @@ typedef struct photon_found {
     photon_neighbor *scratch; /* [capacity] */
 } photon_found;
 
+/* What the next search of a worker may begin with; it changes the time of searches alone. */
+typedef struct photon_search_hint {
+    vec3 position;        /* of the last search */
+    float radius_squared; /* of the disc that it found; 0: there was none */
+    uint32_t leaf;        /* that the next point lies in or beside; PHOTON_NONE: not known */
+} photon_search_hint;
+
 /* Borrows scratch memory: photon_neighbors_capacity(wanted). */
 void photon_found_init(photon_found *found, const photon_tree *tree, uint32_t wanted, photon_neighbor *scratch);
 
 /* Finds the `wanted` nearest photons within radius, whose number becomes found->count; `found` is from
  * photon_found_init for as many. Where all were found, found->farthest is one of them, and found->limit its distance.
- * found->other is photon_tree_k_nearest's *out_other_squared. */
+ * found->other is photon_tree_k_nearest's *out_other_squared. in_out_hint may be NULL. */
 void photon_found_search(photon_found *found, const photon_tree *tree, vec3 position, vec3 normal, float min_cos,
-                         float radius, uint32_t wanted);
+                         float radius, uint32_t wanted, photon_search_hint *in_out_hint);
 
 /* A photon by where it is found: the number of its leaf in `leaves`, times the lanes of a block, and its lane. */
 static inline uint32_t photon_found_index(const photon_found *found, uint32_t slot)

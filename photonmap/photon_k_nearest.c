@@ -95,8 +95,11 @@ static float guess_radius_squared(const photon_query *q, uint32_t first_block, u
     return guess > 0.0f && guess < largest ? guess : largest;
 }
 
+/* A disc whose centre is so near, in radii squared, mostly has nearly the same radius. */
+static const float HINT_NEAR = 0.25f, HINT_MARGIN = 1.1f;
+
 void disc_kernels_search(const disc_kernels *kernels, photon_found *found, const photon_tree *tree, vec3 position,
-                         vec3 normal, float min_cos, float radius, uint32_t wanted)
+                         vec3 normal, float min_cos, float radius, uint32_t wanted, photon_search_hint *in_out_hint)
 {
     found->leaf_count = found->count = 0;
     found->other = INFINITY;
@@ -104,16 +107,22 @@ void disc_kernels_search(const disc_kernels *kernels, photon_found *found, const
         return;
     photon_query q;
     photon_query_init(&q, tree, position, normal, min_cos);
-    uint32_t leaf = first_leaf(&q);
-    float largest = radius * radius, limit = guess_radius_squared(&q, leaf, wanted, largest);
+    const photon_search_hint none = {.leaf = PHOTON_NONE}, *hint = in_out_hint ? in_out_hint : &none;
+    uint32_t leaf = hint->leaf != PHOTON_NONE ? hint->leaf : first_leaf(&q);
+    float largest = radius * radius, limit = HINT_MARGIN * hint->radius_squared;
+    if (!(vec3_distance_squared(hint->position, position) < HINT_NEAR * hint->radius_squared))
+        limit = guess_radius_squared(&q, leaf, wanted, largest);
+    limit = fminf(limit, largest);
     for (;;) {
         found->leaf_count = found->count = 0;
         found->limit = limit;
         found->other = INFINITY;
         collect(kernels, &q, leaf, wanted, found);
         if (found->count == wanted || limit >= largest)
-            return;
+            break;
         /* too few: by how many tells how much farther to look */
         limit = fminf(limit * fminf(4.0f, 1.3f * (float)wanted / (float)(found->count + 1)), largest);
     }
+    if (in_out_hint)
+        *in_out_hint = (photon_search_hint){position, found->limit, PHOTON_NONE};
 }
