@@ -174,8 +174,8 @@ static const struct {
     int width;
     bool needs_first_hit;
 } SUMS[FILM_SUM_COUNT] = {
-#define SUM_ROW(sum, width, needs_first_hit)     [sum] = {width, needs_first_hit},
-#define SUM_OF_HIT(sum, member, needs_first_hit) [sum] = {FIRST_HIT_WIDTH(member), needs_first_hit},
+#define SUM_ROW(sum, width, needs_first_hit)           [sum] = {width, needs_first_hit},
+#define SUM_OF_HIT(sum, type, member, needs_first_hit) [sum] = {sizeof(type) / sizeof(float), needs_first_hit},
     FILM_SUM_LIST(SUM_ROW, SUM_OF_HIT)
 #undef SUM_ROW
 #undef SUM_OF_HIT

@@ -8,8 +8,8 @@
 #include "film/cryptomatte.h"
 #include "film/eye_sample.h"
 
-/* The values that are summed over a pixel's samples, in two forms of rows: each has its number of channels, or the
- * member of first_hit (eye_sample.h) that it sums, and whether the sum alone needs what the camera ray meets first.
+/* The values that are summed over a pixel's samples: those of FIRST_HIT_LIST (eye_sample.h), in rows as they stand
+ * there, and others, each with its number of channels and whether the sum alone needs what the camera ray meets first.
  * SUM_RADIANCE is always there, and at 0; of SUM_GROUPS there are 3 channels for each light group, and 3 for what came
  * through the photon map. */
 #define FILM_SUM_LIST(X, OF_HIT)                                                                                       \
@@ -17,27 +17,20 @@
     X(SUM_ALPHA, 1, true) /* the ray met something */                                                                  \
     X(SUM_PARTS, 3 * LIGHT_PART_COUNT, false)                                                                          \
     X(SUM_GROUPS, 0, false)                                                                                            \
-    OF_HIT(SUM_ALBEDO, albedo, true)                                                                                   \
-    OF_HIT(SUM_NORMAL, normal, true)                                                                                   \
-    OF_HIT(SUM_GEOMETRIC_NORMAL, geometric_normal, false)                                                              \
-    OF_HIT(SUM_POSITION, position, false)                                                                              \
-    OF_HIT(SUM_UV, uv, false)                                                                                          \
-    OF_HIT(SUM_SLOPE, slope, false)                                                                                    \
-    OF_HIT(SUM_IRRADIANCE, irradiance, true)                                                                           \
+    FIRST_HIT_LIST(OF_HIT)                                                                                             \
     X(SUM_SQUARES, 3, false)       /* squares of samples as the film develops them */                                  \
     X(SUM_DEVELOPED, 3, false)     /* these samples themselves */                                                      \
     X(SUM_HIT_SQUARES, 3, false)   /* squares of samples that met something: pbrt's Variance */                        \
     X(SUM_HIT_DEVELOPED, 3, false) /* these samples themselves */
 
 typedef enum film_sum {
-#define FILM_SUM_ENUM(sum, width_or_member, needs_first_hit) sum,
-    FILM_SUM_LIST(FILM_SUM_ENUM, FILM_SUM_ENUM)
+#define FILM_SUM_ENUM(sum, width, needs_first_hit)         sum,
+#define FIRST_HIT_ENUM(sum, type, member, needs_first_hit) sum,
+    FILM_SUM_LIST(FILM_SUM_ENUM, FIRST_HIT_ENUM)
 #undef FILM_SUM_ENUM
+#undef FIRST_HIT_ENUM
         FILM_SUM_COUNT
 } film_sum;
-
-/* A member of first_hit consists of floats, all of which are summed. */
-#define FIRST_HIT_WIDTH(member) ((int)(sizeof((const first_hit *)0)->member / sizeof(float)))
 
 /* The value that a channel of a file is made of. */
 typedef enum channel_source {

@@ -21,15 +21,24 @@ enum { LIGHT_PART_COUNT = PART_SPECULAR + 1 };
 /* Groups of lights by their names; behind them what comes through the photon map, of which no lamp is known. */
 enum { LIGHT_GROUPS_MAX = 32 };
 
+/* The values of a camera ray's first hit that are summed over a pixel: of each its sum (aov.h), type and member, and
+ * whether the sum alone needs what the ray meets first. Types consist of floats, all of which are summed. */
+#define FIRST_HIT_LIST(X)                                                                                              \
+    X(SUM_ALBEDO, rgb, albedo, true)                                                                                   \
+    X(SUM_NORMAL, vec3, normal, true)                      /* of shading, on the eye's side */                         \
+    X(SUM_GEOMETRIC_NORMAL, vec3, geometric_normal, false) /* on the eye's side */                                     \
+    X(SUM_POSITION, vec3, position, false)                                                                             \
+    X(SUM_UV, vec2, uv, false)                                                                                         \
+    X(SUM_SLOPE, vec2, slope, false)         /* dz/dx, dz/dy of the surface's plane, from pixel to pixel */            \
+    X(SUM_IRRADIANCE, rgb, irradiance, true) /* W/m^2, of the photon map's estimate there */
+
 /* The camera ray's first hit; all zero where there is none. Space is the film's: see aov.h. */
 typedef struct first_hit {
     bool is_hit;
-    float depth;                             /* along the camera's axis; of spherical cameras the distance */
-    vec3 position, normal, geometric_normal; /* the normals on the eye's side */
-    vec2 uv;
-    vec2 slope; /* dz/dx, dz/dy of the surface's plane, from pixel to pixel */
-    rgb albedo;
-    rgb irradiance;                  /* W/m^2, of the photon map's estimate there */
+    float depth; /* along the camera's axis; of spherical cameras the distance */
+#define FIRST_HIT_MEMBER(sum, type, member, needs_first_hit) type member;
+    FIRST_HIT_LIST(FIRST_HIT_MEMBER)
+#undef FIRST_HIT_MEMBER
     uint32_t object_id, material_id; /* from 1 on; 0: nothing */
 } first_hit;
 

@@ -219,7 +219,8 @@ static const struct {
     int width;
 } OF_HIT[FILM_SUM_COUNT] = {
 #define SUM_ROW(sum, width, needs_first_hit)
-#define SUM_OF_HIT(sum, member, needs_first_hit) [sum] = {offsetof(first_hit, member), FIRST_HIT_WIDTH(member)},
+#define SUM_OF_HIT(sum, type, member, needs_first_hit)                                                                 \
+    [sum] = {offsetof(first_hit, member), sizeof(type) / sizeof(float)},
     FILM_SUM_LIST(SUM_ROW, SUM_OF_HIT)
 #undef SUM_ROW
 #undef SUM_OF_HIT
