@@ -241,8 +241,8 @@ static bool answer_by_word(irradiance_cache *cache, const irradiance_query *quer
     if (holds && !photon_map_reaches(map, irradiance_photon, query->position, irradiance))
         return answer_without_photon(cache, query, PHOTON_NONE, worker_index, out_irradiance);
     if (irradiance_word_state(word) == IRRADIANCE_READY_IN_SIGHT && map->surfaces)
-        holds = !photon_map_is_behind_wall(map, map->irradiance_photons.blocks, query->position, query->normal,
-                                           irradiance_photon, &cache->counters[worker_index].rays);
+        holds = !photon_map_is_beyond_gap(map, map->irradiance_photons.blocks, query->position, query->normal,
+                                          irradiance_photon, &cache->counters[worker_index].rays);
     *out_irradiance = holds ? irradiance : rgb_gray(0.0f);
     cache->counters[worker_index].refused += !holds;
     return holds;

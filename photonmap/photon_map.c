@@ -172,16 +172,36 @@ uint64_t photon_map_bytes(const photon_map *map)
 
 uint32_t photon_map_scratch_count(const photon_map *map) { return photon_neighbors_capacity(map->nearest + 1); }
 
-bool photon_map_is_behind_wall(const photon_map *map, const photon_block *blocks, vec3 position, vec3 normal,
-                               uint32_t index, uint64_t *in_out_rays)
+/* Whether a line from the point to the photon is blocked, at this share of their distance above their surface. */
+static bool is_blocked_above(const photon_map *map, const photon_block *blocks, vec3 position, vec3 normal,
+                             uint32_t index, float share, uint64_t *in_out_rays)
 {
     ++*in_out_rays;
     vec3 at = photon_block_position(blocks, index), its_normal = direction_decode(photon_block_normal(blocks, index));
     /* and over what a curved surface bulges between the two: on a sphere an eighth of the angle */
-    float share = 1.0f / 32.0f + 0.125f * sqrtf(vec3_distance_squared(normal, its_normal));
+    share += 0.125f * sqrtf(vec3_distance_squared(normal, its_normal));
     float lift = sqrtf(vec3_distance_squared(position, at)) * share;
     vec3 from = vec3_add_scaled(position, normal, lift), to = vec3_add_scaled(at, its_normal, lift);
     return scene_is_blocked(map->surfaces, scene_ray_make(from, vec3_sub(to, from)), 1.0f);
+}
+
+/* Lower things (a carpet, a skirting) are no walls. */
+static const float WALL_SHARE = 1.0f / 32.0f;
+
+bool photon_map_is_behind_wall(const photon_map *map, const photon_block *blocks, vec3 position, vec3 normal,
+                               uint32_t index, uint64_t *in_out_rays)
+{
+    return is_blocked_above(map, blocks, position, normal, index, WALL_SHARE, in_out_rays);
+}
+
+/* A wall or door may end a little above the surface: what is lit on its one side is not lit on the other. */
+static const float GAP_SHARE = 1.0f / 4.0f;
+
+bool photon_map_is_beyond_gap(const photon_map *map, const photon_block *blocks, vec3 position, vec3 normal,
+                              uint32_t index, uint64_t *in_out_rays)
+{
+    return is_blocked_above(map, blocks, position, normal, index, WALL_SHARE, in_out_rays) ||
+           is_blocked_above(map, blocks, position, normal, index, GAP_SHARE, in_out_rays);
 }
 
 /* An irradiance photon higher or lower than the point by this share of its distance may lie on a board or a frame. */
@@ -208,7 +228,7 @@ static uint32_t in_sight(const photon_map *map, vec3 position, vec3 normal, uint
     float height = vec3_dot(vec3_sub(photon_block_position(map->irradiance_photons.blocks, found), position), normal);
     if (distance_squared <= far * far && height * height <= LEVEL_SLOPE * LEVEL_SLOPE * distance_squared)
         return found;
-    return photon_map_is_behind_wall(map, map->irradiance_photons.blocks, position, normal, found, in_out_rays)
+    return photon_map_is_beyond_gap(map, map->irradiance_photons.blocks, position, normal, found, in_out_rays)
                ? PHOTON_HIDDEN
                : found;
 }

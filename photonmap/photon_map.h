@@ -80,6 +80,10 @@ uint32_t photon_map_scratch_count(const photon_map *map);
 bool photon_map_is_behind_wall(const photon_map *map, const photon_block *blocks, vec3 position, vec3 normal,
                                uint32_t index, uint64_t *in_out_rays);
 
+/* The same, and whether something between the two ends a little above their surface: a door, or a wall with a gap. */
+bool photon_map_is_beyond_gap(const photon_map *map, const photon_block *blocks, vec3 position, vec3 normal,
+                              uint32_t index, uint64_t *in_out_rays);
+
 /* Returns the distance, scene units, beyond which an irradiance photon must be visible from a point to represent it: in
  * a dark room the nearest irradiance photon may belong to a bright room next door. Of evenly spread photons 1 in 7 is
  * that far; the light that still leaks through a partition decreases with the square of the distance. */
