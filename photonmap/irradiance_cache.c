@@ -65,7 +65,8 @@ void irradiance_cache_reset(irradiance_cache *cache)
     *cache = (irradiance_cache){0};
 }
 
-/* leaf: that of the map's tree which has a photon there, or PHOTON_NONE. out_reach_squared may be NULL. */
+/* Estimates the irradiance at a point, and counts and times that for the worker. leaf: the leaf of the map's tree that
+ * has a photon at the point, or PHOTON_NONE. out_reach_squared may be NULL. */
 static irradiance_extent estimate(irradiance_cache *cache, uint32_t leaf, vec3 position, vec3 normal,
                                   unsigned worker_index, rgb *out_irradiance, float *out_reach_squared)
 {
@@ -84,7 +85,7 @@ static irradiance_extent estimate(irradiance_cache *cache, uint32_t leaf, vec3 p
     return extent;
 }
 
-/* The estimate at a point that no photon stands for. */
+/* Estimates the irradiance at a point that no photon stands for. Returns whether the estimate holds there. */
 static bool estimate_at_point(irradiance_cache *cache, vec3 position, vec3 normal, unsigned worker_index,
                               rgb *out_irradiance)
 {
@@ -96,13 +97,13 @@ static bool estimate_at_point(irradiance_cache *cache, vec3 position, vec3 norma
 
 void irradiance_cache_share(irradiance_cache *cache, claim_owners *owners) { cache->owners = owners; }
 
-/* The number in the worker's claims: among processes, the process is enough. */
+/* Returns the number that the worker writes into its claims: its own, or in a shared map that of its process. */
 static uint32_t claimer_of(const irradiance_cache *cache, unsigned worker_index)
 {
     return cache->owners ? load_relaxed_u32(&cache->owners->claimer) : worker_index;
 }
 
-/* Makes a word final, its check byte first. False where the claim was not the claimer's any more. */
+/* Makes a word final, and before that its check byte. Returns false where the claim was not the claimer's any more. */
 static bool publish(const photon_map *map, uint32_t index, uint32_t claimer, uint32_t word)
 {
     if (map->checks)
@@ -116,7 +117,8 @@ static uint64_t rounding_key(const photon_map *map, uint32_t index)
     return map->is_steady ? photon_block_position_key(map->irradiance_photons.blocks, index) : index;
 }
 
-/* Computes and publishes what the worker has claimed under that number; gives the slot's word. */
+/* Computes and publishes the irradiance of a photon that the worker has claimed under that number. Returns the slot's
+ * word. */
 static uint32_t compute(irradiance_cache *cache, uint32_t index, uint32_t claimer, unsigned worker_index)
 {
     const photon_map *map = cache->map;
@@ -140,8 +142,8 @@ static uint32_t compute(irradiance_cache *cache, uint32_t index, uint32_t claime
     return word;
 }
 
-/* The word of an irradiance photon, computed first where nobody has claimed it; where another has, it need not be
- * ready. */
+/* Returns the word of an irradiance photon. Where nobody has claimed it, it is computed first; where another thread
+ * has, it need not be ready. */
 static uint32_t demand(irradiance_cache *cache, uint32_t irradiance_photon, unsigned worker_index)
 {
     irradiance_slot *slot = photon_map_slot(cache->map, irradiance_photon);
@@ -151,8 +153,8 @@ static uint32_t demand(irradiance_cache *cache, uint32_t irradiance_photon, unsi
     return word;
 }
 
-/* Waits for the word of a photon that another thread is computing; returns any word where the run is cancelled
- * meanwhile. It holds no claim meanwhile, except those that it takes over. */
+/* Waits for the word of a photon that another thread is computing, and returns it; where the run is cancelled
+ * meanwhile, the word may be any. No claim is held while waiting; one that is taken over is computed at once. */
 static uint32_t await(irradiance_cache *cache, const run_context *run, uint32_t index, unsigned worker_index)
 {
     irradiance_slot *slot = photon_map_slot(cache->map, index);
@@ -183,7 +185,7 @@ static void precompute_block(void *user, uint64_t begin, uint64_t end, uint64_t 
     irradiance_cache *cache = job->cache;
     for (uint64_t i = begin; i < end && !run_is_cancelled(job->run); i++)
         demand(cache, (uint32_t)i, worker_index);
-    /* what other processes are at, or have left: nothing is held here */
+    /* other processes may still be computing some, or have died over them; no claim is held while waiting for those */
     for (uint64_t i = begin; cache->owners && i < end && !run_is_cancelled(job->run); i++)
         await(cache, job->run, (uint32_t)i, worker_index);
 }
@@ -217,8 +219,8 @@ void irradiance_cache_restore(irradiance_cache *cache, const uint32_t *words)
     cache->ready_before += irradiance_cache_distinct(cache) - distinct;
 }
 
-/* The answer where no photon stands for the point (PHOTON_NONE), or one that is out of sight (PHOTON_HIDDEN): an
- * estimate at the point, or none. */
+/* Answers a query that no photon stands for: by an estimate at the point where there is none near (PHOTON_NONE), and by
+ * nothing where the nearest one is out of sight (PHOTON_HIDDEN). Returns whether there is an answer. */
 static bool answer_without_photon(irradiance_cache *cache, const irradiance_query *query, uint32_t nearest,
                                   unsigned worker_index, rgb *out_irradiance)
 {
@@ -230,7 +232,7 @@ static bool answer_without_photon(irradiance_cache *cache, const irradiance_quer
     return holds;
 }
 
-/* The answer of an irradiance photon whose word is ready. */
+/* Answers a query by an irradiance photon whose word is ready. Returns whether there is an answer. */
 static bool answer_by_word(irradiance_cache *cache, const irradiance_query *query, uint32_t irradiance_photon,
                            uint32_t word, unsigned worker_index, rgb *out_irradiance)
 {
@@ -272,8 +274,9 @@ void irradiance_cache_get(irradiance_cache *cache, vec3 position, vec3 normal, u
     out_request->irradiance_photon = irradiance_photon;
 }
 
-/* The queries' numbers in the map's order, as the low halves; the high ones are leaves. By digits, from the lowest: as
- * few as their counts fit the first cache. */
+/* Sorts the queries into the map's order. Returns an array with a query's number in the low half of each entry, and the
+ * leaf that it lies in in the high half. It is a radix sort of the leaves, with as few digits as leave a digit's
+ * counts in the first cache. */
 static uint64_t *put_in_order(const photon_map *map, irradiance_scratch *scratch, const irradiance_query *queries,
                               uint32_t count)
 {
@@ -303,8 +306,7 @@ static uint64_t *put_in_order(const photon_map *map, irradiance_scratch *scratch
     return from;
 }
 
-/* Finds the irradiance photons that stand for the queries, in their order, and puts each into the high half of its
- * query's entry. */
+/* Finds the irradiance photon that stands for each query, and puts it into the high half of the query's entry. */
 static void find_irradiance_photons(const photon_map *map, const irradiance_query *queries, uint64_t *order,
                                     uint32_t count, uint64_t *in_out_rays)
 {
@@ -339,24 +341,17 @@ static void prefetch_answer(const photon_map *map, const irradiance_query *query
     __builtin_prefetch(photon_map_slot(map, irradiance_photon));
 }
 
-/* In three sweeps, each of which has the processor's caches to itself: looking up, computing what nobody has claimed,
- * and reading. */
-void irradiance_cache_get_many(irradiance_cache *cache, const run_context *run, const irradiance_query *queries,
-                               uint32_t count, unsigned worker_index, rgb *out_irradiance, bool *out_holds)
+/* Demands the irradiance of each photon in the order, and answers the queries that no photon stands for, whose entries
+ * become PHOTON_NONE. Returns false where the run is cancelled meanwhile. */
+static bool demand_all(irradiance_cache *cache, const run_context *run, const irradiance_query *queries,
+                       uint64_t *order, uint32_t count, bool is_cached, unsigned worker_index, rgb *out_irradiance,
+                       bool *out_holds)
 {
-    enum { CANCEL_EVERY = 16, AHEAD = 8 };
-    const photon_map *map = cache->map;
-    irradiance_counters *counters = &cache->counters[worker_index];
-    uint64_t *order = put_in_order(map, &cache->scratch[worker_index], queries, count);
-    bool is_cached = cache->mode != IRRADIANCE_UNCACHED && map->irradiance_photons.count > 0;
-    counters->requests += count;
-    store_relaxed_u64(&cache->shown[worker_index].requests, counters->requests);
-    if (is_cached)
-        find_irradiance_photons(map, queries, order, count, &counters->rays);
+    enum { CANCEL_EVERY = 16 };
     for (uint32_t k = 0; k < count; k++) {
         uint32_t i = (uint32_t)order[k], irradiance_photon = is_cached ? (uint32_t)(order[k] >> 32) : PHOTON_NONE;
         if (k % CANCEL_EVERY == 0 && run_is_cancelled(run))
-            return;
+            return false;
         if (irradiance_photon >= PHOTON_HIDDEN) {
             order[k] = (uint64_t)PHOTON_NONE << 32 | i;
             out_holds[i] =
@@ -365,6 +360,16 @@ void irradiance_cache_get_many(irradiance_cache *cache, const run_context *run, 
         }
         demand(cache, irradiance_photon, worker_index);
     }
+    return true;
+}
+
+/* Answers the queries whose photons' words are ready. The entries of the others, which other threads are computing, are
+ * moved to the front of the order; returns their number. */
+static uint32_t answer_ready(irradiance_cache *cache, const irradiance_query *queries, uint64_t *order, uint32_t count,
+                             unsigned worker_index, rgb *out_irradiance, bool *out_holds)
+{
+    enum { AHEAD = 8 };
+    const photon_map *map = cache->map;
     uint32_t waiting = 0;
     for (uint32_t k = 0; k < count; k++) {
         uint32_t i = (uint32_t)order[k], irradiance_photon = (uint32_t)(order[k] >> 32);
@@ -377,8 +382,27 @@ void irradiance_cache_get_many(irradiance_cache *cache, const run_context *run, 
             out_holds[i] =
                 answer_by_word(cache, &queries[i], irradiance_photon, word, worker_index, &out_irradiance[i]);
         else
-            order[waiting++] = order[k]; /* its position in the order is free by now */
+            order[waiting++] = order[k];
     }
+    return waiting;
+}
+
+/* Works in sweeps, so that each has the processor's caches to itself: it looks up the photons in the map's order,
+ * computes what nobody has claimed, reads what is ready, and waits for the rest at the end. */
+void irradiance_cache_get_many(irradiance_cache *cache, const run_context *run, const irradiance_query *queries,
+                               uint32_t count, unsigned worker_index, rgb *out_irradiance, bool *out_holds)
+{
+    const photon_map *map = cache->map;
+    irradiance_counters *counters = &cache->counters[worker_index];
+    uint64_t *order = put_in_order(map, &cache->scratch[worker_index], queries, count);
+    bool is_cached = cache->mode != IRRADIANCE_UNCACHED && map->irradiance_photons.count > 0;
+    counters->requests += count;
+    store_relaxed_u64(&cache->shown[worker_index].requests, counters->requests);
+    if (is_cached)
+        find_irradiance_photons(map, queries, order, count, &counters->rays);
+    if (!demand_all(cache, run, queries, order, count, is_cached, worker_index, out_irradiance, out_holds))
+        return;
+    uint32_t waiting = answer_ready(cache, queries, order, count, worker_index, out_irradiance, out_holds);
     counters->deferred += waiting;
     for (uint32_t k = 0; k < waiting; k++) {
         uint32_t i = (uint32_t)order[k];

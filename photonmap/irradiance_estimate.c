@@ -12,7 +12,8 @@ static const float LEVEL = 1.0f / 32.0f;
 /* Photons that crowd to one side of the disc, by more than this share of its radius on average, hint at an edge. */
 static const float LOPSIDED = 0.15f;
 
-/* Along the surface, as far as that is its point's plane: on a sphere all photons lie below it. */
+/* Returns whether the photons crowd to one side. Their offsets count along the point's plane alone, since on a sphere
+ * all photons lie below it. */
 static bool is_lopsided(const photon_disc_sums *sums, vec3 normal, uint32_t count)
 {
     double sum[3], n[3] = {(double)normal.x, (double)normal.y, (double)normal.z}, along = 0.0, square = 0.0;
@@ -25,8 +26,7 @@ static bool is_lopsided(const photon_disc_sums *sums, vec3 normal, uint32_t coun
     return square > (double)LOPSIDED * (double)LOPSIDED * count * count;
 }
 
-/* Whether a photon within the radius, so high or low that it may lie on a floor above or below, lies on that at the
- * point. */
+/* Returns whether a photon that lies so high or low that it may be on a floor above or below is on the point's own. */
 static bool is_of_this_level(const photon_map *map, const photon_disc *disc, uint32_t index, uint64_t *in_out_rays)
 {
     vec3 at = photon_block_position(map->blocks, index);
@@ -54,8 +54,9 @@ static uint32_t count_within(const photon_found *found, float most)
 static const float RIM_SIGMAS = 3.25f;
 enum { RINGS = 4 };
 
-/* Returns whether the photons no farther than `inner` lack flux: there may be fewer of them because they were thinned,
- * each being brighter for it. Sums are of integers, in any order. */
+/* Returns whether the photons no farther than `inner` have less than their share of the flux, beyond chance. Their
+ * number alone does not tell: there may be fewer because they were thinned, and each is then brighter. The sums are of
+ * integers, so that their order does not matter. */
 static bool rings_lack_flux(const photon_found *found, float inner, float share)
 {
     enum { FRACTION_BITS = 8 };
@@ -83,10 +84,11 @@ static bool rings_lack_flux(const photon_found *found, float inner, float share)
     return missing > 0.0 && missing * missing > (double)(RIM_SIGMAS * RIM_SIGMAS) * variance;
 }
 
-/* The largest number that is less than a positive one. */
+/* Returns the largest number that is less than a positive one. */
 static float next_below(float x) { return nextafterf(x, 0.0f); }
 
-/* How many rings, from the innermost, have no more light than the point itself; RINGS where all are so. */
+/* Returns how many rings, from the innermost, have the light of the point: all of them where the inner ones lack
+ * nothing. */
 static uint32_t rings_of_one_light(const photon_found *found, float radius_squared)
 {
     float ring_of = (float)RINGS / radius_squared, most[RINGS - 1];
@@ -111,9 +113,9 @@ static uint32_t rings_of_one_light(const photon_found *found, float radius_squar
     return RINGS;
 }
 
-/* Makes the disc smaller until its rim is as bright as its middle, or has no photons. By their number as well as by
- * their flux: one bright photon, which is a matter of chance, would take itself out of the disc where it lies far from
- * the point. */
+/* Makes the disc smaller until its rim is as bright as its middle, or has no photons. Inner rings must lack photons as
+ * well as flux: by flux alone one bright photon far from the point, which is a matter of chance, would take itself out
+ * of the disc. */
 static void leave_brighter_rim(photon_found *found, float *in_out_radius_squared)
 {
     for (uint32_t rings; (rings = rings_of_one_light(found, *in_out_radius_squared)) < RINGS;) {
@@ -147,6 +149,67 @@ static float reach_of(const photon_map *map, const photon_found *found)
     return is_clear ? found->limit : 0.0f;
 }
 
+/* Returns the squared radius of the disc that the photons found fill. Where there are k + 1 of them, the farthest one,
+ * which does not count, tells how far it reaches; *out_has_next: there are. */
+static float find_disc(const photon_map *map, photon_found *found, bool *out_has_next)
+{
+    float radius_squared = map->max_radius * map->max_radius;
+    *out_has_next = found->count == map->nearest + 1;
+    if (*out_has_next) {
+        radius_squared = found->limit;
+        photon_found_forget(found, found->farthest);
+    }
+    radius_squared = fmaxf(radius_squared, map->min_radius_squared);
+    leave_brighter_rim(found, &radius_squared);
+    return fmaxf(radius_squared, map->min_radius_squared);
+}
+
+/* Sums the photons that lie on the point's own surface, and forgets those that lie above or below it. scratch: room for
+ * all of them. */
+static void sum_own_level(const photon_map *map, const photon_disc *disc, photon_found *found, photon_neighbor *scratch,
+                          uint64_t *in_out_rays, photon_disc_sums *out_sums)
+{
+    const uint32_t count = found->count;
+    const uint32_t on_level = disc_kernels_best()->sum_on_level(disc, found, out_sums, scratch);
+    for (uint32_t i = 0; i < count - on_level; i++) {
+        uint32_t slot = photon_neighbor_index(scratch[i]), index = photon_found_index(found, slot);
+        if (is_of_this_level(map, disc, index, in_out_rays))
+            photon_disc_add(disc, index, out_sums);
+        else
+            photon_found_forget_slot(found, slot);
+    }
+}
+
+/* Returns whether the surface may end within the disc, by what is cheap to tell. */
+static bool may_end(const photon_map *map, const photon_disc *disc, const photon_found *found, float radius_squared,
+                    const photon_disc_sums *sums, uint64_t *in_out_rays)
+{
+    return found->other <= radius_squared || is_lopsided(sums, disc->normal, found->count) ||
+           !surface_region_reaches_rim(map->surfaces, disc->position, disc->normal, PHOTON_ESTIMATE_MIN_COS,
+                                       disc->radius, in_out_rays);
+}
+
+/* Where the surface ends within the disc: takes the photons of its part alone into the sums, and that part for the
+ * area, if an estimate holds there. extent: of the whole disc; returns that of the part. */
+static irradiance_extent fit_to_surface(const photon_map *map, const photon_disc *disc, photon_found *found,
+                                        bool has_next, irradiance_extent extent, uint64_t *in_out_rays,
+                                        photon_disc_sums *in_out_sums, double *in_out_area)
+{
+    surface_region region;
+    if (!surface_region_find(map->surfaces, disc->position, disc->normal, PHOTON_ESTIMATE_MIN_COS, disc->radius,
+                             in_out_rays, &region))
+        return extent;
+    double area = surface_region_area(&region, disc->radius);
+    photon_disc_sums inside;
+    bool is_k = disc_kernels_best()->sum_in_region(disc, &region, found, &inside) == map->nearest && has_next;
+    if (!is_k && !region_holds(map, area, disc->radius))
+        return IRRADIANCE_HOLDS_NOWHERE;
+    *in_out_sums = inside;
+    *in_out_area = area;
+    /* farther points must see the photon anyway */
+    return region.nearest_end < photon_map_far(map) ? IRRADIANCE_HOLDS_IN_SIGHT : extent;
+}
+
 irradiance_extent irradiance_estimate_find(const photon_map *map, vec3 position, vec3 normal, photon_neighbor *scratch,
                                            uint64_t *in_out_rays, rgb *out_irradiance)
 {
@@ -160,61 +223,36 @@ irradiance_extent irradiance_estimate_find_reach(const photon_map *map, vec3 pos
     *out_irradiance = rgb_gray(0.0f);
     if (map->set.count == 0)
         return IRRADIANCE_HOLDS_EVERYWHERE;
+
+    /* the k nearest photons, and the next one */
     const uint32_t wanted = map->nearest + 1;
-    const disc_kernels *kernels = disc_kernels_best();
     photon_found found;
     photon_found_init(&found, &map->tree, wanted, scratch);
     photon_found_search(&found, &map->tree, position, normal, PHOTON_ESTIMATE_MIN_COS, map->max_radius, wanted,
                         in_out_hint);
     if (out_reach_squared)
         *out_reach_squared = reach_of(map, &found);
-    const bool has_next = found.count == wanted;
-    float radius_squared = map->max_radius * map->max_radius;
-    if (has_next) {
-        radius_squared = found.limit;
-        photon_found_forget(&found, found.farthest);
-    }
-    radius_squared = fmaxf(radius_squared, map->min_radius_squared);
-    leave_brighter_rim(&found, &radius_squared);
-    radius_squared = fmaxf(radius_squared, map->min_radius_squared);
-    float radius = sqrtf(radius_squared);
-    double area = (double)AG_PI * (double)radius_squared;
+
+    /* their disc, as far as it has the light of its middle */
+    bool has_next;
+    float radius_squared = find_disc(map, &found, &has_next), radius = sqrtf(radius_squared);
     photon_disc disc = {map->blocks,           position, normal, radius, map->surfaces ? radius * LEVEL : INFINITY,
                         map->flux_exponent_max};
+
+    /* of its photons those on the point's surface, and no other level's */
     photon_disc_sums sums;
-    const uint32_t count = found.count, on_level = kernels->sum_on_level(&disc, &found, &sums, scratch);
-    for (uint32_t i = 0; i < count - on_level; i++) {
-        uint32_t slot = photon_neighbor_index(scratch[i]), index = photon_found_index(&found, slot);
-        if (is_of_this_level(map, &disc, index, in_out_rays))
-            photon_disc_add(&disc, index, &sums);
-        else
-            photon_found_forget_slot(&found, slot);
-    }
-    const uint32_t kept = found.count;
-    surface_region region;
-    irradiance_extent extent = kept < count ? IRRADIANCE_HOLDS_IN_SIGHT : IRRADIANCE_HOLDS_EVERYWHERE;
-    bool may_end =
-        map->surfaces &&
-        (kept < count || found.other <= radius_squared || is_lopsided(&sums, normal, kept) ||
-         !surface_region_reaches_rim(map->surfaces, position, normal, PHOTON_ESTIMATE_MIN_COS, radius, in_out_rays));
-    if (has_next && (float)kept < LEVEL_SHARE_MIN * (float)count) {
+    const uint32_t count = found.count;
+    sum_own_level(map, &disc, &found, scratch, in_out_rays, &sums);
+    bool has_levels = found.count < count;
+
+    /* of its area what is surface */
+    double area = (double)AG_PI * (double)radius_squared;
+    irradiance_extent extent = has_levels ? IRRADIANCE_HOLDS_IN_SIGHT : IRRADIANCE_HOLDS_EVERYWHERE;
+    if (has_next && (float)found.count < LEVEL_SHARE_MIN * (float)count)
         extent = IRRADIANCE_HOLDS_NOWHERE;
-    } else if (may_end && surface_region_find(map->surfaces, position, normal, PHOTON_ESTIMATE_MIN_COS, radius,
-                                              in_out_rays, &region)) {
-        double region_area = surface_region_area(&region, radius);
-        photon_disc_sums whole = sums;
-        uint32_t inside = kernels->sum_in_region(&disc, &region, &found, &sums);
-        bool is_k = has_next && inside == map->nearest;
-        if (is_k || region_holds(map, region_area, radius)) {
-            area = region_area;
-            /* farther points must see the photon anyway */
-            if (region.nearest_end < photon_map_far(map))
-                extent = IRRADIANCE_HOLDS_IN_SIGHT;
-        } else {
-            extent = IRRADIANCE_HOLDS_NOWHERE;
-            sums = whole;
-        }
-    }
+    else if (map->surfaces && (has_levels || may_end(map, &disc, &found, radius_squared, &sums, in_out_rays)))
+        extent = fit_to_surface(map, &disc, &found, has_next, extent, in_out_rays, &sums, &area);
+
     double scale = ldexp(1.0, map->flux_exponent_max - 32) / ((double)map->set.emitted_paths * area);
     *out_irradiance = (rgb){(float)((double)sums.flux[0] * scale), (float)((double)sums.flux[1] * scale),
                             (float)((double)sums.flux[2] * scale)};

@@ -34,8 +34,8 @@ static void trace_block(void *user, uint64_t begin, uint64_t end, uint64_t block
 {
     (void)worker;
     round_job *job = user;
-    /* each photon changes the balance, which lies beside that of another worker's block: a copy has its lines to
-     * itself */
+    /* a copy, since each photon changes the balance, and that of the next block, which another worker changes, may lie
+     * on the same line of the cache */
     path_block out = job->blocks[block_index];
     photon_tracer t = {job->s, job->target, job->settings, &out, UINT32_MAX, NULL, NULL};
     for (uint64_t i = begin; i < end && !run_is_cancelled(job->run); i++)
@@ -53,14 +53,14 @@ static void add_balance(energy_balance *sum, const energy_balance *part)
         a[i] += b[i];
 }
 
-/* Takes a block into the account; where it overfills the set, its paths are traced again up to the one that fills it,
- * so that the balance tells of whole paths and of those alone. */
+/* Adds a block to the set's counts and balance. Where the block overfills the set, its paths are traced again up to the
+ * one that fills it, so that the balance is of whole paths, and of no path behind that one. */
 static ag_status account_block(round_job *job, photon_set *set, uint64_t first_path, path_block *b)
 {
     uint32_t room = job->settings->wanted - set->count;
     if (b->out_of_memory)
         return AG_ERROR_MEMORY;
-    if (b->is_cut) /* all blocks may have been begun when it came: parallel_for then knows nothing of it */
+    if (b->is_cut) /* where all blocks had been begun before the run was cancelled, parallel_for returns AG_OK */
         return AG_CANCELLED;
     if (b->count >= room) {
         *b = (path_block){.photons = b->photons, .capacity = b->capacity};
@@ -103,7 +103,7 @@ static ag_status merge_round(round_job *job, photon_set *set, uint64_t block_cou
     return parallel_for(job->run, used, 16, copy_blocks, &merge, AG_PHASE_PHOTONS, 0.0, 0.0);
 }
 
-/* A ball around all shapes that have traced lobes; of radius 0 where there is none. */
+/* Finds a ball around all shapes that have traced lobes; its radius is 0 where there is none. */
 static ag_status find_traced_surfaces(const scene *s, light_target *out_target)
 {
     vec3 low, high;
@@ -121,7 +121,7 @@ static void explain_shortage(run_context *run, const photon_tracing_settings *se
     const energy_balance *b = &set->balance;
     double emitted = b->emitted[0] + b->emitted[1] + b->emitted[2];
     double escaped = b->escaped[0] + b->escaped[1] + b->escaped[2];
-    /* most scenes with something shiny have hardly any caustics: that is no news */
+    /* few caustics are no reason to warn: most scenes that have mirrors or glass are like that */
     log_message(run->log, settings->kind == PHOTON_GLOBAL ? AG_LOG_WARNING : AG_LOG_INFO,
                 "%s photon map: %u of %u photons stored after %llu paths, of which too few meet a diffuse surface%s "
                 "(%.1f %% of "
@@ -132,8 +132,8 @@ static void explain_shortage(run_context *run, const photon_tracing_settings *se
                 emitted > 0.0 ? 100.0 * escaped / emitted : 0.0);
 }
 
-/* The traced surfaces that a caustic map's paths are to meet first; NULL for the global map. false in *out_has_any:
- * there is no light, or nothing that a caustic could come from. */
+/* Finds the traced surfaces that a caustic map's paths are to meet first; NULL for the global map. *out_has_any is
+ * false where there is no light, or nothing that a caustic could come from. */
 static ag_status find_target(const scene *s, photon_kind kind, light_target *out_target_ball,
                              const light_target **out_target, bool *out_has_any)
 {
@@ -157,7 +157,8 @@ static void tell_of_full_map(run_context *run, const photon_tracing_settings *se
                 (unsigned long long)set->emitted_paths, (unsigned long long)settings->paths);
 }
 
-/* The next round's blocks: as many as the yield so far lets expect are needed, and one to spare. */
+/* Returns the number of the next round's blocks: as many as will be needed if they yield as much as those before, and
+ * one to spare. */
 static uint64_t next_block_count(const photon_set *set, uint32_t wanted, uint64_t block_count)
 {
     double needed = (double)(wanted - set->count) * (double)set->emitted_paths;
@@ -175,7 +176,7 @@ static uint64_t paths_of_round(const photon_tracing_settings *settings, uint64_t
     return left < paths ? left : paths;
 }
 
-/* Whether paths have stored so few photons that there is no point in going on. */
+/* Returns whether paths have stored so few photons that there is no point in going on. */
 static bool is_hopeless(const photon_tracing_settings *settings, const photon_set *set)
 {
     bool takes_too_many = settings->paths == 0 && set->emitted_paths / PHOTON_PATHS_MAX >= settings->wanted;
@@ -190,6 +191,42 @@ static void divide_balance(energy_balance *balance, uint64_t paths)
         ((double *)balance)[i] *= share;
 }
 
+/* Returns how much of the work is done, from 0 to 1. */
+static double share_done(const photon_tracing_settings *settings, const photon_set *set, uint64_t next_path)
+{
+    double done = (double)set->count / settings->wanted;
+    return settings->paths > 0 ? fmax(done, (double)next_path / (double)settings->paths) : done;
+}
+
+/* Traces rounds until the set is full, all paths have been emitted, or there is no point in going on. blocks: those of
+ * a round, whose buffers are used again by the next. */
+static ag_status trace_rounds(const scene *s, run_context *run, const photon_tracing_settings *settings,
+                              const light_target *target, path_block *blocks, photon_set *set)
+{
+    uint64_t next_path = 0, block_count = settings->wanted / (FIRST_YIELD * PATHS_PER_BLOCK) + 1;
+    if (block_count > BLOCKS_PER_FIRST_ROUND)
+        block_count = BLOCKS_PER_FIRST_ROUND;
+    while (set->count < settings->wanted && (settings->paths == 0 || next_path < settings->paths)) {
+        uint64_t paths = paths_of_round(settings, next_path, block_count);
+        block_count = (paths + PATHS_PER_BLOCK - 1) / PATHS_PER_BLOCK;
+        round_job job = {s, target, settings, blocks, next_path, run};
+        AG_TRY(parallel_for(run, paths, PATHS_PER_BLOCK, trace_block, &job, AG_PHASE_PHOTONS, 0.0, 0.0));
+        AG_TRY(merge_round(&job, set, block_count));
+        for (uint64_t i = 0; i < block_count; i++)
+            blocks[i] = (path_block){.photons = blocks[i].photons, .capacity = blocks[i].capacity};
+        next_path += paths;
+        if (set->count < settings->wanted && is_hopeless(settings, set)) {
+            explain_shortage(run, settings, set);
+            break;
+        }
+        block_count = next_block_count(set, settings->wanted, block_count);
+        run_progress(run, AG_PHASE_PHOTONS,
+                     settings->progress_begin +
+                         (settings->progress_end - settings->progress_begin) * share_done(settings, set, next_path));
+    }
+    return AG_OK;
+}
+
 ag_status photon_tracing_run(const scene *s, run_context *run, const photon_tracing_settings *settings,
                              photon_set *out_set)
 {
@@ -198,37 +235,12 @@ ag_status photon_tracing_run(const scene *s, run_context *run, const photon_trac
     light_target traced_surfaces;
     const light_target *caustic_target;
     bool has_any;
-    ag_status found = find_target(s, settings->kind, &traced_surfaces, &caustic_target, &has_any);
-    if (found != AG_OK || !has_any)
-        return found;
+    ag_status status = find_target(s, settings->kind, &traced_surfaces, &caustic_target, &has_any);
+    if (status != AG_OK || !has_any)
+        return status;
     path_block *blocks = calloc(BLOCKS_PER_ROUND_MAX, sizeof *blocks);
     set.photons = photon_records_create(settings->wanted);
-    ag_status status = blocks && set.photons ? AG_OK : AG_ERROR_MEMORY;
-    uint64_t next_path = 0, block_count = settings->wanted / (FIRST_YIELD * PATHS_PER_BLOCK) + 1;
-    if (block_count > BLOCKS_PER_FIRST_ROUND)
-        block_count = BLOCKS_PER_FIRST_ROUND;
-    while (status == AG_OK && set.count < settings->wanted && (settings->paths == 0 || next_path < settings->paths)) {
-        uint64_t paths = paths_of_round(settings, next_path, block_count);
-        block_count = (paths + PATHS_PER_BLOCK - 1) / PATHS_PER_BLOCK;
-        round_job job = {s, caustic_target, settings, blocks, next_path, run};
-        status = parallel_for(run, paths, PATHS_PER_BLOCK, trace_block, &job, AG_PHASE_PHOTONS, 0.0, 0.0);
-        if (status == AG_OK)
-            status = merge_round(&job, &set, block_count);
-        for (uint64_t i = 0; i < block_count; i++)
-            blocks[i] = (path_block){.photons = blocks[i].photons, .capacity = blocks[i].capacity};
-        next_path += paths;
-
-        if (status == AG_OK && set.count < settings->wanted && is_hopeless(settings, &set)) {
-            explain_shortage(run, settings, &set);
-            break;
-        }
-        block_count = next_block_count(&set, settings->wanted, block_count);
-        double done = (double)set.count / settings->wanted;
-        if (settings->paths > 0)
-            done = fmax(done, (double)next_path / (double)settings->paths);
-        run_progress(run, AG_PHASE_PHOTONS,
-                     settings->progress_begin + (settings->progress_end - settings->progress_begin) * done);
-    }
+    status = blocks && set.photons ? trace_rounds(s, run, settings, caustic_target, blocks, &set) : AG_ERROR_MEMORY;
     for (int i = 0; blocks && i < BLOCKS_PER_ROUND_MAX; i++)
         free(blocks[i].photons);
     free(blocks);

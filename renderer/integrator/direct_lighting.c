@@ -109,7 +109,7 @@ rgb direct_light_escaped(const transport *t, vec3 from, vec3 normal, vec3 direct
     return sum;
 }
 
-/* The variance of the samples' mean, by how they differ; 0 for a single one, of which it is not known. */
+/* Returns the variance of the samples' mean, by how they differ; 0 for a single one, of which it is not known. */
 static float variance_of_mean(float sum, float squares, int count)
 {
     if (count < 2)
@@ -118,31 +118,53 @@ static float variance_of_mean(float sum, float squares, int count)
     return fmaxf(squares - sum * sum / n, 0.0f) / (n * (n - 1.0f));
 }
 
-direct_light direct_light_gathered(const transport *t, eye_worker *worker, const vertex *v, const sampler *where,
-                                   int path_vertex, sample_counts counts, rgb *by_group)
+/* The samples that one of the two ways of sampling has taken of a vertex's direct light. */
+typedef struct light_sums {
+    rgb sum;       /* of the samples */
+    float squares; /* of their means of the three colours */
+} light_sums;
+
+static void add_sample(light_sums *sums, rgb brought)
 {
-    rgb from_lamps = rgb_gray(0.0f), by_scattering = rgb_gray(0.0f), sky = rgb_gray(0.0f);
-    float lamp_squares = 0.0f, scatter_squares = 0.0f;
-    if (!t->has_lights)
-        return (direct_light){from_lamps, sky, 0.0f};
-    int lamp_count = counts.light, scatter_count = counts.scatter;
-    float lamp_share = 1.0f / (float)lamp_count, scatter_share = scatter_count > 0 ? 1.0f / (float)scatter_count : 0.0f;
-    vec3 from = vertex_position(v), normal = vertex_light_normal(v, BSDF_GATHERED);
-    for (int i = 0; i < lamp_count; i++) {
-        float u_pick = sampler_2d_of(where, SAMPLE_LIGHT_PICK, path_vertex, (uint32_t)lamp_count, (uint32_t)i).x;
-        vec2 u = sampler_2d_of(where, SAMPLE_LIGHT, path_vertex, (uint32_t)lamp_count, (uint32_t)i);
-        lamp_light sample = direct_light_sample_lamp(t, worker, v, BSDF_GATHERED, u_pick, u, lamp_count, scatter_count);
-        from_lamps = rgb_add(from_lamps, sample.radiance);
-        lamp_squares += rgb_mean(sample.radiance) * rgb_mean(sample.radiance);
-        if (!rgb_is_black(sample.radiance) && t->s->lights[sample.lamp].kind == LIGHT_INFINITE)
-            sky = rgb_add(sky, rgb_scale(sample.radiance, lamp_share));
-        if (by_group && !rgb_is_black(sample.radiance))
-            add_to_group(by_group, &t->s->lights[sample.lamp], rgb_scale(sample.radiance, lamp_share));
+    sums->sum = rgb_add(sums->sum, brought);
+    sums->squares += rgb_mean(brought) * rgb_mean(brought);
+}
+
+/* Samples lamps. The sky's part, and that of groups where they are asked for, is added as a mean over the samples. */
+static light_sums sample_lamps(const transport *t, eye_worker *worker, const vertex *v, const sampler *where,
+                               int path_vertex, sample_counts counts, rgb *in_out_sky, rgb *by_group)
+{
+    light_sums sums = {rgb_gray(0.0f), 0.0f};
+    const uint32_t count = (uint32_t)counts.light;
+    const float share = 1.0f / (float)counts.light;
+    for (uint32_t i = 0; i < count; i++) {
+        float u_pick = sampler_2d_of(where, SAMPLE_LIGHT_PICK, path_vertex, count, i).x;
+        vec2 u = sampler_2d_of(where, SAMPLE_LIGHT, path_vertex, count, i);
+        lamp_light sample =
+            direct_light_sample_lamp(t, worker, v, BSDF_GATHERED, u_pick, u, counts.light, counts.scatter);
+        add_sample(&sums, sample.radiance);
+        if (rgb_is_black(sample.radiance))
+            continue;
+        const light *lamp = &t->s->lights[sample.lamp];
+        if (lamp->kind == LIGHT_INFINITE)
+            *in_out_sky = rgb_add(*in_out_sky, rgb_scale(sample.radiance, share));
+        add_to_group(by_group, lamp, rgb_scale(sample.radiance, share));
     }
-    for (int i = 0; i < scatter_count; i++) {
-        float u_lobe = sampler_2d_of(where, SAMPLE_LOBE, path_vertex, (uint32_t)scatter_count, (uint32_t)i)
-                           .y; /* x decides the way on at the vertex */
-        vec2 u = sampler_2d_of(where, SAMPLE_SCATTER_TO_LIGHT, path_vertex, (uint32_t)scatter_count, (uint32_t)i);
+    return sums;
+}
+
+/* Samples directions by scattering, where that can meet a lamp. The sky's part and that of groups as in sample_lamps.
+ */
+static light_sums sample_scattering(const transport *t, eye_worker *worker, const vertex *v, const sampler *where,
+                                    int path_vertex, sample_counts counts, rgb *in_out_sky, rgb *by_group)
+{
+    light_sums sums = {rgb_gray(0.0f), 0.0f};
+    const uint32_t count = (uint32_t)counts.scatter;
+    const float share = counts.scatter > 0 ? 1.0f / (float)counts.scatter : 0.0f;
+    const vec3 from = vertex_position(v), normal = vertex_light_normal(v, BSDF_GATHERED);
+    for (uint32_t i = 0; i < count; i++) {
+        float u_lobe = sampler_2d_of(where, SAMPLE_LOBE, path_vertex, count, i).y; /* x decides the vertex's way on */
+        vec2 u = sampler_2d_of(where, SAMPLE_SCATTER_TO_LIGHT, path_vertex, count, i);
         bsdf_sample scattered;
         if (!bsdf_sample_direction(&v->scattering, BSDF_GATHERED, BSDF_RADIANCE, u_lobe, u, &scattered))
             continue;
@@ -151,14 +173,12 @@ direct_light direct_light_gathered(const transport *t, eye_worker *worker, const
         scene_ray ray = transport_scattered_ray(t, v, scattered.direction, false);
         if (!transport_trace_through_panes(t, worker, ray, &met)) {
             light_group_sums groups;
-            const rgb *of_group = light_group_sums_begin(&groups, by_group != NULL);
+            rgb *of_group = light_group_sums_begin(&groups, by_group != NULL);
             rgb escaped = direct_light_escaped(t, from, normal, scattered.direction, scattered.pdf_solid_angle,
-                                               lamp_count, scatter_count, of_group ? groups.of_group : NULL);
-            rgb brought = rgb_mul(rgb_mul(escaped, met.transmittance), scattered.weight);
-            by_scattering = rgb_add(by_scattering, brought);
-            scatter_squares += rgb_mean(brought) * rgb_mean(brought);
-            rgb reflected = rgb_scale(rgb_mul(met.transmittance, scattered.weight), scatter_share);
-            sky = rgb_add(sky, rgb_mul(escaped, reflected));
+                                               counts.light, counts.scatter, of_group);
+            add_sample(&sums, rgb_mul(rgb_mul(escaped, met.transmittance), scattered.weight));
+            rgb reflected = rgb_scale(rgb_mul(met.transmittance, scattered.weight), share);
+            *in_out_sky = rgb_add(*in_out_sky, rgb_mul(escaped, reflected));
             for (int k = 0; of_group && k <= LIGHT_GROUPS_MAX; k++)
                 by_group[k] = rgb_add(by_group[k], rgb_mul(of_group[k], reflected));
             continue;
@@ -167,17 +187,29 @@ direct_light direct_light_gathered(const transport *t, eye_worker *worker, const
         if (rgb_is_black(emitted))
             continue;
         float weight =
-            direct_light_scatter_weight(t, from, normal, &met, scattered.pdf_solid_angle, lamp_count, scatter_count);
+            direct_light_scatter_weight(t, from, normal, &met, scattered.pdf_solid_angle, counts.light, counts.scatter);
         rgb brought = rgb_scale(rgb_mul(emitted, scattered.weight), weight);
-        by_scattering = rgb_add(by_scattering, brought);
-        scatter_squares += rgb_mean(brought) * rgb_mean(brought);
-        add_to_group(by_group, met.lamp, rgb_scale(brought, scatter_share));
+        add_sample(&sums, brought);
+        add_to_group(by_group, met.lamp, rgb_scale(brought, share));
     }
-    float variance = variance_of_mean(rgb_mean(from_lamps), lamp_squares, lamp_count) +
-                     (scatter_count == 1 ? 0.5f * scatter_squares
-                                         : variance_of_mean(rgb_mean(by_scattering), scatter_squares, scatter_count));
-    rgb sum = rgb_scale(from_lamps, lamp_share);
-    if (scatter_count > 0)
-        sum = rgb_add(sum, rgb_scale(by_scattering, scatter_share));
-    return (direct_light){sum, sky, variance};
+    return sums;
+}
+
+direct_light direct_light_gathered(const transport *t, eye_worker *worker, const vertex *v, const sampler *where,
+                                   int path_vertex, sample_counts counts, rgb *by_group)
+{
+    direct_light direct = {rgb_gray(0.0f), rgb_gray(0.0f), 0.0f};
+    if (!t->has_lights)
+        return direct;
+    light_sums lamps = sample_lamps(t, worker, v, where, path_vertex, counts, &direct.from_sky, by_group);
+    light_sums scattered = sample_scattering(t, worker, v, where, path_vertex, counts, &direct.from_sky, by_group);
+    direct.radiance = rgb_scale(lamps.sum, 1.0f / (float)counts.light);
+    if (counts.scatter > 0)
+        direct.radiance = rgb_add(direct.radiance, rgb_scale(scattered.sum, 1.0f / (float)counts.scatter));
+    /* a single scattered sample stands for its own deviation */
+    direct.variance =
+        variance_of_mean(rgb_mean(lamps.sum), lamps.squares, counts.light) +
+        (counts.scatter == 1 ? 0.5f * scattered.squares
+                             : variance_of_mean(rgb_mean(scattered.sum), scattered.squares, counts.scatter));
+    return direct;
 }
