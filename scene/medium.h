@@ -18,8 +18,8 @@ typedef struct medium {
 /* Returns the transmittance of a distance in scene units; INFINITY is fine. */
 rgb medium_transmittance(const medium *m, float distance);
 
-/* Finds the absorption of a measured liquid or solid by pbrt-v4's name, 1/mm; all of them scatter too. Returns false
- * for an unknown name. */
-bool medium_find_preset(const char *name, rgb *out_sigma_a);
+/* Finds by pbrt-v4's name what a measured liquid or solid absorbs and scatters, 1/mm; the latter is reduced, as if it
+ * scattered alike in all directions. Returns false for an unknown name. */
+bool medium_find_preset(const char *name, rgb *out_sigma_a, rgb *out_reduced_sigma_s);
 
 #endif

@@ -55,6 +55,8 @@ static void errors_name_location_and_reason(void **state)
         {"WorldBegin Shape \"sphere\" \"float radius\" nan", "1:42", "\"float radius\" expects numbers, not nan"},
         {"WorldBegin Shape \"sphere\" \"float radius\" [ [ 1 ] ]", "1:44", "\"float radius\" expects numbers, not ["},
         {"WorldBegin Shape \"sphere\" \"float radius\" -1", "1:27", "\"radius\" should be above 0"},
+        {"WorldBegin Material \"subsurface\" \"string name\" \"Granite\"", "1:34",
+         "no subsurface material is named \"Granite\""},
         {"WorldBegin Shape \"sphere\" \"radius\" 1", "1:27", "\"radius\" should be a parameter's \"type name\""},
         {"WorldBegin Shape \"sphere\" \"double radius\" 1", "1:27", "\"double radius\": unknown parameter type"},
         {"WorldBegin Shape \"sphere\" \"integer radius\" 1", "1:27", "\"integer radius\" should be \"float radius\""},

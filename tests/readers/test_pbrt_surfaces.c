@@ -422,6 +422,15 @@ static void stand_ins_keep_what_they_can(void **state)
     assert_near(m.reflectance.r, 1, 1e-6);
     assert_near(m.reflectance.g, 0, 1e-6);
     assert_near(m.reflectance.b, .25 * (1 + exp(-4.0 / 3 * sqrt(1.5))) * exp(-sqrt(1.5)), 1e-6);
+    /* a named stuff is as its coefficients say, whatever else is given */
+    m = warned_material("Material \"subsurface\" \"rgb sigma_a\" [ .061 .97 1.45 ] \"rgb sigma_s\" [ .18 .07 .03 ]",
+                        FOR_FLESH);
+    const rgb ketchup = m.reflectance;
+    assert_true(ketchup.r > 4 * ketchup.g);
+    m = warned_material(
+        "Material \"subsurface\" \"string name\" \"Ketchup\" \"float g\" .5 \"rgb reflectance\" [ .1 .2 .3 ]",
+        FOR_FLESH);
+    assert_rgb(m.reflectance, ketchup.r, ketchup.g, ketchup.b, 1e-6);
     m = warned_material("Material \"kdsubsurface\" \"rgb Kd\" [ .1 .2 .3 ]",
                         READ_AS("kdsubsurface", "subsurface") FOR_FLESH);
     assert_rgb(m.reflectance, .1, .2, .3, 1e-7);

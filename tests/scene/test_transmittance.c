@@ -68,9 +68,9 @@ static void beers_law(void **state)
     }
     rgb far = medium_transmittance(&m, INFINITY);
     assert_true(far.r == 0.0f && far.g == 1.0f && far.b == 0.0f);
-    rgb found;
-    assert_true(medium_find_preset("Espresso", &found) && found.g == 6.5751f);
-    assert_false(medium_find_preset("espresso", &found));
+    rgb found, scattered;
+    assert_true(medium_find_preset("Espresso", &found, &scattered) && found.g == 6.5751f && scattered.g == 0.84557f);
+    assert_false(medium_find_preset("espresso", &found, &scattered));
 }
 
 /* A slab of a, in which lies one of b, under a ceiling. */

@@ -5,6 +5,7 @@
  * material. Threads: one per scene. */
 #include "color/spectra.h"
 #include "material/hair.h"
+#include "medium.h"
 #include "pbrt/pbrt_private.h"
 
 #include <stdio.h>
@@ -318,31 +319,42 @@ static float half_space_reflectance(float sigma_a, float reduced_sigma_s)
     return (float)(0.5 * albedo * (1.0 + exp(-4.0 / 3.0 * root)) * exp(-root));
 }
 
+/* Of a named stuff, else of "sigma_a", "sigma_s" and "g"; without these of whole milk, as in pbrt. The name decides
+ * even beside a "reflectance". */
+static ag_status read_flesh(pbrt_parser *parser, parameter_list *list, const char *name, material *m)
+{
+    rgb sigma_a, sigma_s;
+    float g = 0.0f;
+    if (!medium_find_preset(name[0] ? name : "Wholemilk", &sigma_a, &sigma_s))
+        return pbrt_refuse(parser, list, "name", "no subsurface material is named \"%s\"", name);
+    sigma_a = working_space_light(&parser->scene->space, sigma_a);
+    sigma_s = working_space_light(&parser->scene->space, sigma_s);
+    if (!name[0]) {
+        AG_TRY(parameter_get_rgb(list, parser->log, "sigma_a", &sigma_a));
+        AG_TRY(parameter_get_rgb(list, parser->log, "sigma_s", &sigma_s));
+        AG_TRY(parameter_get_float(list, parser->log, "g", &g));
+    }
+    float s = 1.0f - fminf(fmaxf(g, -1.0f), 1.0f);
+    m->reflectance = clamp_color(rgb_make(half_space_reflectance(sigma_a.r, s * sigma_s.r),
+                                          half_space_reflectance(sigma_a.g, s * sigma_s.g),
+                                          half_space_reflectance(sigma_a.b, s * sigma_s.b)));
+    return AG_OK;
+}
+
 ag_status pbrt_read_subsurface(pbrt_parser *parser, parameter_list *list, material *m)
 {
-    static const char *const UNUSED[] = {"name", "mfp", "g", "scale", "sigma_a", "sigma_s"};
-    float g = 0.0f;
+    static const char *const UNUSED[] = {"reflectance", "mfp", "g", "scale", "sigma_a", "sigma_s"};
+    const char *name = "";
     m->ior = 1.33f;
     tell_stand_in(parser, list, "subsurface",
                   "\"coateddiffuse\" of its diffuse reflectance, which lets no light travel inside,");
     AG_TRY(read_index(parser, list, "eta", &m->ior));
     AG_TRY(read_roughness(parser, list, "", m));
-    if (parameter_list_find(list, "reflectance")) {
+    AG_TRY(parameter_get_string(list, parser->log, "name", &name));
+    if (!name[0] && parameter_list_find(list, "reflectance"))
         AG_TRY(read_reflectance(parser, list, m));
-    } else {
-        rgb sigma_a = working_space_light(&parser->scene->space, rgb_make(0.0011f, 0.0024f, 0.014f));
-        rgb sigma_s = working_space_light(&parser->scene->space, rgb_make(2.55f, 3.21f, 3.77f));
-        AG_TRY(parameter_get_rgb(list, parser->log, "sigma_a", &sigma_a));
-        AG_TRY(parameter_get_rgb(list, parser->log, "sigma_s", &sigma_s));
-        AG_TRY(parameter_get_float(list, parser->log, "g", &g));
-        if (parameter_list_find(list, "name"))
-            log_at_once(parser->log, AG_LOG_WARNING, list->where, "subsurface name",
-                        "\"name\" of \"subsurface\" is not supported: pbrt's default coefficients are used");
-        float s = 1.0f - fminf(fmaxf(g, -1.0f), 1.0f);
-        m->reflectance = clamp_color(rgb_make(half_space_reflectance(sigma_a.r, s * sigma_s.r),
-                                              half_space_reflectance(sigma_a.g, s * sigma_s.g),
-                                              half_space_reflectance(sigma_a.b, s * sigma_s.b)));
-    }
+    else
+        AG_TRY(read_flesh(parser, list, name, m));
     pass_over(list, UNUSED, sizeof UNUSED / sizeof *UNUSED);
     return AG_OK;
 }

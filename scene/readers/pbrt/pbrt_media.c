@@ -54,7 +54,7 @@ static ag_status read_homogeneous(pbrt_parser *parser, parameter_list *list, med
     rgb sigma_a = rgb_gray(1.0f), sigma_s = rgb_gray(1.0f);
     float scale, g = 0.0f;
     AG_TRY(parameter_get_string(list, parser->log, "preset", &preset));
-    if (!preset[0] || !medium_find_preset(preset, &sigma_a)) {
+    if (!preset[0] || !medium_find_preset(preset, &sigma_a, &sigma_s)) {
         if (preset[0])
             log_at(parser->log, AG_LOG_WARNING, parameter_list_find(list, "preset")->where,
                    "no medium has the preset \"%s\": \"sigma_a\" counts", preset);
