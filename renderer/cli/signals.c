@@ -15,7 +15,7 @@ static volatile sig_atomic_t resets_terminal;
 
 static bool is_released; /* signals are blocked, by us */
 
-static const int STOPPING[] = {SIGINT, SIGTERM, SIGHUP};
+static const int STOPPING[] = {SIGINT, SIGTERM, SIGHUP, SIGXCPU};
 
 static void reset_terminal(void)
 {
@@ -30,6 +30,8 @@ void signals_reset_terminal(void) { resets_terminal = 1; }
 
 static void on_stop(int number)
 {
+    if (stop_signal && number == SIGXCPU)
+        return; /* it comes every second beyond the limit */
     if (stop_signal) {
         reset_terminal();
         ag_abandon_files();

@@ -13,8 +13,8 @@ void signals_catch_abort(void);
 /* From now on a signal that ends the process at once resets the terminal's attributes, and begins a line. */
 void signals_reset_terminal(void);
 
-/* The first SIGINT, SIGTERM or SIGHUP lets the work end in order: rendering pauses, all else is cancelled. The second
- * ends the process at once. */
+/* The first SIGINT, SIGTERM, SIGHUP or SIGXCPU (a soft limit of CPU time) lets the work end in order: rendering pauses,
+ * all else is cancelled. The second ends the process at once, but for SIGXCPU, which the system repeats. */
 void signals_catch(ag_context *context);
 /* Forgets the context, which is about to be destroyed: signals wait from here on. */
 void signals_release(void);

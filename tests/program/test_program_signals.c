@@ -41,12 +41,28 @@ static void expect_end(const char *phase, int number, const char *const *argumen
 static void test_every_signal(void **state)
 {
     (void)state;
-    static const int NUMBERS[] = {SIGINT, SIGTERM, SIGHUP};
-    for (int i = 0; i < 3; i++)
+    static const int NUMBERS[] = {SIGINT, SIGTERM, SIGHUP, SIGXCPU};
+    for (int i = 0; i < 4; i++)
         expect_end("render", NUMBERS[i], ARGUMENTS(LONG, "--integrator=path", "--spp=100000", "--size=48x48", BOX));
     json_t *stats = stats_read(in_folder("a.json"));
     assert_string_equal(json_string_value(stats_find(stats, "end.reason")), "signal");
     json_decref(stats);
+    expect_partial_pictures();
+}
+
+/* The system repeats its signal every second beyond the soft limit. */
+static void test_repeated_cpu_limit(void **state)
+{
+    (void)state;
+    const program_setting usual = {0};
+    program_process process =
+        program_start(&usual, ARGUMENTS("--integrator=path", "--spp=100000", "--size=48x48", LONG, BOX));
+    program_wait_for(&process, "\"phase\": \"render\"");
+    for (int i = 0; i < 20; i++)
+        assert_int_equal(kill(process.id, SIGXCPU), 0);
+    program_run run = program_finish(&process);
+    expect_exit(&run, 128 + SIGXCPU);
+    program_run_reset(&run);
     expect_partial_pictures();
 }
 
@@ -185,9 +201,10 @@ static void test_ignored_signal(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        TEST_IN_FOLDER(test_every_signal),   TEST_IN_FOLDER(test_every_phase), TEST_IN_FOLDER(test_loading),
-        TEST_IN_FOLDER(test_snapshot),       TEST_IN_FOLDER(test_writing),     TEST_IN_FOLDER(test_second_signal),
-        TEST_IN_FOLDER(test_ignored_signal),
+        TEST_IN_FOLDER(test_every_signal),   TEST_IN_FOLDER(test_every_phase),
+        TEST_IN_FOLDER(test_loading),        TEST_IN_FOLDER(test_snapshot),
+        TEST_IN_FOLDER(test_writing),        TEST_IN_FOLDER(test_second_signal),
+        TEST_IN_FOLDER(test_ignored_signal), TEST_IN_FOLDER(test_repeated_cpu_limit),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
