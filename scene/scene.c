@@ -12,6 +12,7 @@
 #include "rays/bvh.h"
 #include "rays/slab_faces.h"
 #include "scene_extent.h"
+#include "scene_names.h"
 #include "shape/curves.h"
 #include "status.h"
 
@@ -310,6 +311,37 @@ void scene_drop_all_lights(scene *s) { drop_lights(s, LIGHT_AREA, true); }
 /* Beyond this a float overflows when squared. */
 static const float REACH_MAX = 1e18f;
 
+/* Whether rays that start within the ball do so in the instance's space too, where Embree refuses to trace others. */
+static bool is_in_reach_of_instance(const affine *world_from_object, vec3 center, float radius)
+{
+    const double at[3] = {(double)center.x, (double)center.y, (double)center.z};
+    const vec3 axes[3] = {{1.0f, 0.0f, 0.0f}, {0.0f, 1.0f, 0.0f}, {0.0f, 0.0f, 1.0f}};
+    float reach = vec3_max_abs(instance_point_in_object(world_from_object, at));
+    for (int i = 0; i < 3; i++) /* directions too */
+        reach += fmaxf(radius, 1.0f) * vec3_max_abs(instance_direction_in_object(world_from_object, axes[i]));
+    return reach <= REACH_MAX;
+}
+
+/* Light from afar starts within twice the radius of the bounds; eyes stand anywhere. */
+static ag_status check_instances(const scene *s, log_sink *log)
+{
+    const vec3 eye = transform_point(&s->camera.world_from_camera, (vec3){0.0f, 0.0f, 0.0f});
+    const float away = s->has_camera ? vec3_length(vec3_sub(eye, s->bounding_center)) : 0.0f;
+    const float radius = fmaxf(2.0f * s->bounding_radius, away);
+    for (uint32_t i = 0; i < s->instance_count; i++)
+        for (uint32_t k = 0; k < s->instances[i].step_count; k++)
+            if (!is_in_reach_of_instance(&s->instance_steps[s->instances[i].first_step + k], s->bounding_center,
+                                         radius)) {
+                const char *name = scene_name(s, NAMED_OBJECT, s->instances[i].object_index);
+                log_message(log, AG_LOG_ERROR,
+                            "an instance of object \"%s\" is so small, or so flat, that the scene reaches beyond 1e18 "
+                            "units in its space",
+                            name ? name : "");
+                return AG_ERROR_SCENE;
+            }
+    return AG_OK;
+}
+
 static ag_status find_bounds(scene *s, log_sink *log)
 {
     AG_TRY(scene_find_bounds(s, NULL, &s->bounds_min, &s->bounds_max));
@@ -324,6 +356,7 @@ static ag_status find_bounds(scene *s, log_sink *log)
     }
     s->bounding_center = vec3_scale(vec3_add(s->bounds_min, s->bounds_max), 0.5f);
     s->bounding_radius = vec3_length(vec3_sub(s->bounds_max, s->bounding_center)) * 1.00001f;
+    AG_TRY(check_instances(s, log));
     return scene_find_detail(s, &s->detail_center, &s->detail_radius);
 }
 
