@@ -200,23 +200,34 @@ static void names_grow_while_a_mix_is_made(void **state)
     }
 }
 
-static const char CIRCLE[] = "t: error: materials of type \"mix\" mix one another in a circle, or more than 16 deep\n";
+static const char CIRCLE[] = "mixes itself by way of others, or mixes are more than 16 deep\n";
+
+/* The location is that of a mix that is named. */
+static void expect_circle(const reading *r, const char *where)
+{
+    assert_non_null(strstr(r->said[AG_LOG_ERROR], CIRCLE));
+    if (strncmp(r->said[AG_LOG_ERROR], where, strlen(where)) != 0)
+        fail_msg("%s is not at %s", r->said[AG_LOG_ERROR], where);
+}
 
 static void circles_of_mixes_are_refused(void **state)
 {
     (void)state;
-    static const char *const CASES[] = {
-        "WorldBegin\n" MIX("a", "a", "a"),
-        "WorldBegin\n" MAKE("x", ".1") MIX("a", "x", "a"),
-        "WorldBegin\n" MAKE("x", ".1") "NamedMaterial \"a\"\n" MIX("a", "x", "a"),
-        "WorldBegin\n" MAKE("x", ".1") MIX("a", "b", "x") MIX("b", "x", "a"),
-        "WorldBegin\n" MIX("a", "x", "b") MIX("b", "c", "x") MIX("c", "x", "a") MAKE("x", ".1"),
+    static const struct {
+        const char *text, *where;
+    } CASES[] = {
+        {"WorldBegin\n" MIX("a", "a", "a"), "t:2:1: error: the mix \"a\""},
+        {"WorldBegin\n" MAKE("x", ".1") MIX("a", "x", "a"), "t:3:1: error: the mix \"a\""},
+        {"WorldBegin\n" MAKE("x", ".1") "NamedMaterial \"a\"\n" MIX("a", "x", "a"), "t:4:1: error: the mix \"a\""},
+        {"WorldBegin\n" MAKE("x", ".1") MIX("a", "b", "x") MIX("b", "x", "a"), "t:3:1: error: the mix \"a\""},
+        {"WorldBegin\n" MIX("a", "x", "b") MIX("b", "c", "x") MIX("c", "x", "a") MAKE("x", ".1"),
+         "t:2:1: error: the mix \"a\""},
     };
     for (size_t i = 0; i < sizeof CASES / sizeof *CASES; i++) {
-        reading r = reading_create(NULL, CASES[i], strlen(CASES[i]));
+        reading r = reading_create(NULL, CASES[i].text, strlen(CASES[i].text));
         assert_int_equal(r.status, AG_ERROR_SCENE);
         assert_int_equal(r.count[AG_LOG_ERROR], 1);
-        assert_string_equal(r.said[AG_LOG_ERROR], CIRCLE);
+        expect_circle(&r, CASES[i].where);
         reading_destroy(&r);
     }
 }
@@ -236,7 +247,7 @@ static void deep_mixes_are_refused(void **state)
         reading r = reading_create(NULL, text, used);
         assert_int_equal(r.status, depth <= 16 ? AG_OK : AG_ERROR_SCENE);
         if (depth > 16)
-            assert_string_equal(r.said[AG_LOG_ERROR], CIRCLE);
+            expect_circle(&r, "t:18:1: error: the mix \"m16\"");
         else
             assert_int_equal(r.count[AG_LOG_WARNING], 0);
         reading_destroy(&r);

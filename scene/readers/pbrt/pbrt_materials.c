@@ -191,10 +191,11 @@ static ag_status check_mixes(pbrt_parser *parser)
     enum { DEPTH_MAX = 16 };
     const scene *s = parser->scene;
     unsigned char *depth = calloc((size_t)s->material_count + 1, 1);
-    bool has_changed = true, is_too_deep = false;
+    uint32_t too_deep = s->material_count; /* none */
+    bool has_changed = true;
     if (!depth)
         return AG_ERROR_MEMORY;
-    while (has_changed && !is_too_deep) {
+    while (has_changed && too_deep == s->material_count) {
         has_changed = false;
         for (uint32_t i = 0; i < s->material_count; i++) {
             const material *m = &s->materials[i];
@@ -202,17 +203,20 @@ static ag_status check_mixes(pbrt_parser *parser)
                 if (depth[i] <= depth[m->mixed[k]]) {
                     depth[i] = (unsigned char)(depth[m->mixed[k]] + 1);
                     has_changed = true;
-                    is_too_deep = is_too_deep || depth[i] > DEPTH_MAX;
+                    if (depth[i] > DEPTH_MAX)
+                        too_deep = m->mixed[k]; /* by its name */
                 }
         }
     }
     free(depth);
-    if (!is_too_deep)
-        return AG_OK;
-    log_message(parser->log, AG_LOG_ERROR,
-                "%s: error: materials of type \"mix\" mix one another in a circle, or more than %d deep",
-                parser->scene->file_names[0], DEPTH_MAX);
-    return AG_ERROR_SCENE;
+    for (size_t i = 0; i < parser->named_material_count; i++) {
+        const pbrt_named_material *named = &parser->named_materials[i];
+        if (named->index == too_deep)
+            return pbrt_error(parser, named->where, strlen("MakeNamedMaterial"),
+                              "the mix \"%s\" mixes itself by way of others, or mixes are more than %d deep",
+                              named->name, DEPTH_MAX);
+    }
+    return AG_OK;
 }
 
 /* Interfaces do not shine: lamps of a material that turned out to be one, after they were made, go dark. */
