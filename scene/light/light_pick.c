@@ -20,13 +20,18 @@ static double mean_power(const light *l) { return ((double)l->power.r + l->power
 
 static ag_status find_powers(scene *s, log_sink *log)
 {
+    uint32_t brightest = 0;
     for (uint32_t i = 0; i < s->light_count; i++) {
         AG_TRY(light_commit(s, &s->lights[i]));
         s->light_power = rgb_add(s->light_power, s->lights[i].power);
+        if (!(mean_power(&s->lights[i]) <= mean_power(&s->lights[brightest])))
+            brightest = i;
     }
     if (rgb_is_finite(s->light_power))
         return AG_OK;
-    log_message(log, AG_LOG_ERROR, "the lights' power together is beyond what a float holds");
+    log_message(log, AG_LOG_ERROR,
+                "the lights' power together is beyond what a float holds; the brightest is number %u of %u",
+                brightest + 1, s->light_count);
     return AG_ERROR_SCENE;
 }
 

@@ -313,6 +313,29 @@ static void scales_do_not_matter(void **state)
     test_run_reset(&r);
 }
 
+/* The message tells which light it is, in the order of the file. */
+static void too_much_power_is_refused(void **state)
+{
+    (void)state;
+    static const char *const CASES[] = {"LightSource \"point\" LightSource \"point\" \"rgb I\" [1e38 1e38 1e38] "
+                                        "LightSource \"point\"",
+                                        "LightSource \"distant\" LightSource \"distant\" \"float scale\" 1e38 "
+                                        "LightSource \"point\" Shape \"sphere\" \"float radius\" 1e9"};
+    for (int i = 0; i < 2; i++) {
+        test_run r;
+        test_run_init(&r, 1);
+        scene *s = scene_create();
+        snprintf(text, TEXT_SIZE, "WorldBegin %s", CASES[i]);
+        assert_int_equal(pbrt_parse_text(&r.run, "t", text, strlen(text), s), AG_OK);
+        assert_int_equal(scene_commit(s, &r.run, NULL), AG_ERROR_SCENE);
+        assert_non_null(strstr(r.said,
+                               "the lights' power together is beyond what a float holds; the brightest is number 2 "
+                               "of 3"));
+        scene_destroy(s);
+        test_run_reset(&r);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -324,6 +347,7 @@ int main(void)
         cmocka_unit_test(one_light_is_certain),
         cmocka_unit_test(odd_points),
         cmocka_unit_test(scales_do_not_matter),
+        cmocka_unit_test(too_much_power_is_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
