@@ -1,6 +1,7 @@
-/* render.c: the whole flow on one page: light's side (render_maps), the eye's (render_tiles), film.
- * Rests on: Jensen 1996; Christensen 1999; Neilson, Yang, TR 04-21, 2004.
- * Threads: one phase after the other, each on all of the context's workers; what a phase made is const in the next. */
+/* render.c: the whole flow: ag_rendering_create makes a film, photon maps and guides; ag_rendering_continue brings
+ * samples into the film, pass by pass; ag_rendering_finish hands the film over. Rests on: Jensen 1996; Christensen
+ * 1999; Neilson, Yang, TR 04-21, 2004. Threads: one phase after the other, each on all of the context's workers; what a
+ * phase made is const in the next. */
 #define _POSIX_C_SOURCE 200809L
 #include "film/adaptive.h"
 #include "film/film_copy.h"
@@ -19,7 +20,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Brings all pixels to their samples, with stops to decide how the next are split. */
+/* Brings all pixels to `wanted` samples, with stops to decide into how many the next samples are split. */
 static ag_status render_passes(ag_rendering *r, uint32_t wanted)
 {
     ag_film *film = r->film;
@@ -31,7 +32,7 @@ static ag_status render_passes(ag_rendering *r, uint32_t wanted)
     }
 }
 
-/* The number of passes between decisions which pixels need more. */
+/* Brings pixels to `wanted` samples at most, with stops to decide which of them need more. */
 static ag_status render_adaptively(ag_rendering *r, uint32_t wanted)
 {
     ag_film *film = r->film;
@@ -49,8 +50,9 @@ static ag_status render_adaptively(ag_rendering *r, uint32_t wanted)
     return status;
 }
 
-/* Of a pixel, the width that one of its samples stands for: they share the pixel and, by its filter, some of those
- * around it. No less than a quarter: where samples are adaptive, their number is but a bound. */
+/* Returns the width that one sample stands for, as a share of a pixel's. The samples share the pixel and, by its
+ * filter, some of the pixels around it. It is no less than a quarter, since adaptive samples are fewer than their
+ * number in the settings. */
 static float pixel_share(const scene *s, const ag_render_settings *settings)
 {
     static const float FILTER_WIDTH = 1.5f, SHARE_MIN = 0.25f;
@@ -100,65 +102,9 @@ ag_status rendering_settle(ag_context *context, const scene *s, const ag_render_
     return AG_ERROR_SCENE;
 }
 
-/* Notes camera and settings as OpenEXR's standard attributes describe them. Errors: AG_ERROR_MEMORY. */
-static ag_status note_origin(const ag_rendering *r, film_origin *out)
-{
-    const camera *c = &r->s->camera;
-    const ag_render_settings *settings = &r->settings;
-    double film_from_camera[4][4];
-    transform world_from_camera = c->world_from_camera;
-    if (c->is_moving)
-        world_from_camera = camera_transform_at(c, 0.0f);
-    out->settings = *settings;
-    out->settings.photon_map_file = NULL; /* the caller's */
-    out->has_ndc =
-        camera_film_from_camera(c, (float)settings->width / (float)settings->height, 1e-2, 1e3, film_from_camera);
-    for (int i = 0; i < 4; i++)
-        for (int k = 0; k < 4; k++) {
-            double ndc = 0.0;
-            for (int j = 0; out->has_ndc && j < 4; j++)
-                ndc += film_from_camera[i][j] * world_from_camera.inverse[j][k];
-            out->world_to_camera[4 * k + i] = (float)world_from_camera.inverse[i][k];
-            out->world_to_ndc[4 * k + i] = (float)ndc;
-        }
-    out->defined = r->s->defined ? strdup(r->s->defined) : NULL;
-    return out->defined || !r->s->defined ? AG_OK : AG_ERROR_MEMORY;
-}
-
-ag_status rendering_create_film(ag_rendering *r)
-{
-    pixel_filter filter;
-    aov_layout layout;
-    const ag_render_settings *settings = &r->settings;
-    const aov_needs also = {.albedo_and_normal = settings->denoise, .variance = settings->noise_level > 0.0f};
-    static const char *const no_groups[] = {"default"};
-    const char *const *group_names = no_groups;
-    int group_count = 1;
-    if (r->s->light_group_count > 0) {
-        group_names = (const char *const *)(void *)r->s->light_group_names;
-        group_count = (int)r->s->light_group_count;
-    }
-    AG_TRY(pixel_filter_create(&r->s->hints.filter, r->s->hints.disable_pixel_jitter, r->context->log, &filter));
-    AG_TRY(aov_layout_create(settings->layers, also, !integrator_of(settings->integrator)->has_photon_map, group_names,
-                             group_count, &layout));
-    r->film =
-        film_create(settings, &r->s->space, &filter, integrator_of(settings->integrator)->splits_samples, &layout);
-    if (!r->film)
-        return AG_ERROR_MEMORY;
-    AG_TRY(note_origin(r, &r->film->origin));
-    for (int i = 0; i < CRYPTOMATTE_KIND_COUNT; i++)
-        if (r->film->layout.has_matte[i]) {
-            AG_TRY(cryptomatte_create(r->s, (cryptomatte_kind)i, &r->film->mattes[i]));
-        }
-    if (r->film->width > 0)
-        return AG_OK;
-    log_message(r->context->log, AG_LOG_ERROR, "the crop window holds no pixel");
-    return AG_ERROR_ARGUMENT;
-}
-
 /* --- a photon map that others can reach --- */
 
-/* Between passes: what a pass has rendered counts when the map's file is still whole behind it. status: the pass's. */
+/* Called after a pass, with its status: what it has rendered counts only where the map's file is still whole. */
 static ag_status check_map(ag_rendering *r, ag_status status)
 {
     if (!r->maps || !r->maps->file.is_shared || (status != AG_OK && status != AG_PAUSED && status != AG_CANCELLED))
@@ -177,7 +123,7 @@ static ag_status check_map(ag_rendering *r, ag_status status)
     return AG_ERROR_SYSTEM;
 }
 
-/* Learns where shadow rays find light, where that is wanted and there is a choice. */
+/* Learns where shadow rays find light, if the settings want that and the scene leaves a choice. */
 static ag_status guide_direct_light(ag_rendering *r)
 {
     ag_context *context = r->context;
@@ -194,7 +140,7 @@ static ag_status guide_direct_light(ag_rendering *r)
     return AG_OK;
 }
 
-/* Takes over the maps of another rendering, and whatever depends on them alone. */
+/* Takes over the maps of another rendering, and all that depends on nothing but them. */
 static void share_maps(ag_rendering *r, const ag_rendering *with)
 {
     r->maps = with->maps ? maps_hold(with->maps) : NULL;
@@ -204,7 +150,7 @@ static void share_maps(ag_rendering *r, const ag_rendering *with)
     r->t.gather_min_distance = with->t.gather_min_distance;
 }
 
-/* with: of whose maps it is; NULL: of its own. */
+/* Makes film, maps, guides and workers. with: the rendering whose maps it uses, or NULL to make maps of its own. */
 static ag_status prepare(ag_rendering *r, const ag_rendering *with)
 {
     ag_context *context = r->context;
@@ -225,7 +171,7 @@ static ag_status prepare(ag_rendering *r, const ag_rendering *with)
     return r->workers ? AG_OK : AG_ERROR_MEMORY;
 }
 
-/* Settings, film, maps and guides, of a rendering that knows its scene. */
+/* Settles the settings of a rendering that knows its scene, and prepares it. */
 static ag_status begin_rendering(ag_rendering *r, const ag_render_settings *settings)
 {
     AG_TRY(rendering_settle(r->context, r->s, settings, &r->settings));
@@ -247,7 +193,6 @@ static void borrow(ag_rendering *r, ag_context *context, ag_scene *loaded)
     r->not_finite_before = context->statistics.samples_not_finite;
 }
 
-/* light's side: lamps -> photons -> maps -> cache */
 ag_status ag_rendering_create(ag_context *context, const ag_scene *loaded, const ag_render_settings *settings,
                               ag_rendering **out_rendering)
 {
@@ -269,7 +214,8 @@ ag_status ag_rendering_create(ag_context *context, const ag_scene *loaded, const
     return status;
 }
 
-/* The scene as another camera sees it: all else is borrowed from it. Errors: AG_ERROR_ARGUMENT, AG_ERROR_MEMORY. */
+/* Gives the rendering a copy of its scene that differs by the camera alone, and borrows all else. Errors:
+ * AG_ERROR_ARGUMENT, AG_ERROR_MEMORY. */
 static ag_status look_from(ag_rendering *r, const float from[3], const float to[3], const float up[3])
 {
     const camera *before = &r->s->camera;
@@ -332,7 +278,7 @@ static ag_status render_wanted(ag_rendering *r, const integrator *kind, uint32_t
     return r->film->wanted ? render_adaptively(r, wanted) : render_passes(r, wanted);
 }
 
-/* Up to `wanted` samples a pixel. The film is resolved also where that fails. */
+/* Renders one pass, up to `wanted` samples a pixel. The film is resolved even where that fails. */
 static ag_status render_pass(ag_rendering *r, uint32_t wanted)
 {
     const integrator *kind = integrator_of(r->settings.integrator);
@@ -345,7 +291,6 @@ static ag_status render_pass(ag_rendering *r, uint32_t wanted)
     return debug_views_render(&r->t, &r->context->run, r->workers, r->film);
 }
 
-/* the eye's side: tiles -> film */
 ag_status ag_rendering_continue(ag_rendering *r, int samples_per_pixel)
 {
     if (!r || samples_per_pixel < 1 || samples_per_pixel > r->settings.samples_per_pixel)

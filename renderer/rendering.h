@@ -46,8 +46,8 @@ struct ag_rendering {
     bool keeps_passes;                     /* that is wanted */
 };
 
-/* Fills in r->film of context, scene and settings. Errors: AG_ERROR_MEMORY, AG_ERROR_ARGUMENT (the crop holds no
- * pixel). (render.c) */
+/* Makes r->film, by context, scene and settings. Errors: AG_ERROR_MEMORY, AG_ERROR_ARGUMENT (the crop holds no pixel).
+ * (rendering_film.c) */
 ag_status rendering_create_film(ag_rendering *r);
 
 /* Settings with nothing left open; says in the log what is out of range. (render.c) */

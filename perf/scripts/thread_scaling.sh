@@ -141,7 +141,8 @@ plot of("either", "photons", 8) using 1:2 with linespoints lw 2, \
 unset multiplot
 PLOT
 
-# What run.sh judges, with as many threads as cores; and how much of a core one thread of arithmetic got.
+# The ratios that run.sh judges, with as many threads as there are cores, and the share of a core that one thread of
+# arithmetic got.
 suite_ratio scaling.machine_share "$(awk -v first="$first" "$suite_awk"'
     $1 == first { v[++n] = $4 / ($3 * $1) } END { print median(v, n) }' "$out/arithmetic.csv")"
 for pair in either:photons either:map precompute:precompute on-demand:render on-demand:work; do

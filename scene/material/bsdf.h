@@ -25,8 +25,8 @@
  * smaller angles to the surface, and their part beyond the factor is lost. */
 #define BSDF_SHADING_NORMAL_MAX 32.0f
 
-/* The same for fibres on surfaces that do not face rays, met at a grazing angle: little light arrives there, and what
- * it scatters is as bright as any. Whoever traces photons splits paths by bsdf_flux_gain. */
+/* The largest such factor of fibres on surfaces that do not face rays, at a grazing angle: little light arrives there,
+ * but what they scatter is as bright as elsewhere. Whoever traces photons splits paths by bsdf_flux_gain. */
 #define BSDF_FIBRE_FLUX_MAX 1024.0f
 
 typedef enum bsdf_lobes { BSDF_GATHERED = 1, BSDF_TRACED = 2, BSDF_ALL = 3 } bsdf_lobes;

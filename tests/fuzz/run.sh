@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # run.sh: one fuzz target with libFuzzer, as long as is wished: installs what is missing, builds, starts from the seeds.
 # Use: tests/fuzz/run.sh TARGET [SECONDS]     TARGET: pbrt, ply, ...: the fuzz_*.c of this folder; SECONDS: 60
-# What it learns is kept in build/fuzz/corpus/TARGET and gone on with; findings are in build/fuzz/findings.
+# Inputs that reach new code are kept in build/fuzz/corpus/TARGET, where the next run begins; findings are in
+# build/fuzz/findings.
 # Exit code 1 where there is one.
 set -euo pipefail
 

@@ -119,7 +119,7 @@ static void test_known_build(void **state)
     assert_int_equal(strlen(build.sources), 32);
 }
 
-/* Of more faults than there is room for the first ones are kept. */
+/* Where there are more faults than there is room for, the first ones are kept. */
 static void test_many_faults(void **state)
 {
     (void)state;

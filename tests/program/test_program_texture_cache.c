@@ -166,7 +166,8 @@ static void test_damage(void **state)
     picture_reset(&whole);
 }
 
-/* What is beyond the bound is removed, the longest unused first; what is larger itself is not kept. */
+/* Pictures are removed until the folder is within its bound, the longest unused first. A picture that is larger than
+ * the bound is not kept. */
 static void test_bound(void **state)
 {
     (void)state;

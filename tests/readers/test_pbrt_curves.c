@@ -135,7 +135,7 @@ static void a_ribbons_normals_turn_evenly(void **state)
     reading_destroy(&r);
 }
 
-/* What Embree makes of a ribbon rests on the direction at its ends, which two control points in one do not tell. */
+/* Embree needs a direction at each end of a ribbon. Where two control points coincide, they do not tell one. */
 static void a_ribbon_knows_its_direction(void **state)
 {
     (void)state;

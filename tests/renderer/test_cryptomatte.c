@@ -8,7 +8,7 @@
 
 #include <jansson.h>
 
-/* From the specification's examples of metadata. */
+/* These hashes are the specification's own examples of metadata. */
 static void test_hashes(void **state)
 {
     (void)state;

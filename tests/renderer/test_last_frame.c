@@ -12,7 +12,7 @@
 
 enum { SIZE = 24, PLATES = 4, TEXT_MAX = 8192 };
 
-/* What a frame consists of. */
+/* The values that differ from frame to frame. */
 typedef struct props {
     double ball[3], ball_radius, camera, lamp, red, shutter;
     double plate[PLATES][3]; /* where plates stand on the floor; the first `plates` of them do, and how high */
@@ -279,7 +279,7 @@ static void test_full_map(void **state)
     ag_context_destroy(all.context);
 }
 
-/* What a frame leaves behind goes from one context to another, and is used once. */
+/* A frame's photons go from one context to another, and are used once. */
 static void test_taking_over(void **state)
 {
     (void)state;

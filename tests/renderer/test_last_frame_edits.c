@@ -6,7 +6,7 @@
 
 enum { VALUES = 3 * SIZE * SIZE };
 
-/* What a test scene consists of: two squares that face each other, and a ball between them. */
+/* The values of a test scene of two squares that face each other, with a ball between them. */
 typedef struct contents {
     double ball_x, camera_x;
     bool is_red, has_plate;

@@ -300,9 +300,9 @@ static void settings_of_another_release_are_refused(void **state)
     end_bench(&b);
 }
 
-/* What the library tells in a struct of any size: an older program's, which lacks the last members,
- * gets those that it has; a newer one's gets zeros in those that the library does not have; nothing is written behind.
- */
+/* The library fills structs of any size. That of an older program, which lacks the last members, gets those that it
+ * has; that of a newer program gets zeros in the members that the library does not know. Nothing is written behind
+ * either. */
 typedef void fill_call(const bench *b, void *out, size_t size);
 
 static void fill_statistics(const bench *b, void *out, size_t size)

@@ -147,7 +147,7 @@ static void magnified_pictures_keep_their_bits(void **state)
     reset_picture(&p);
 }
 
-/* At one pixel of the picture per pixel of the film. */
+/* The picture has one pixel for each pixel of the film. */
 static void detail_seen_frontally_keeps_its_contrast(void **state)
 {
     (void)state;

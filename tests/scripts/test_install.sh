@@ -21,7 +21,7 @@ for program in "$prefix/bin/afterglow" "$staged/afterglow"; do
     echo "ok: $(realpath --relative-to="$folder" "$program")"
 done
 
-# What would fail at the end fails at the beginning: here the scene is not even read.
+# A picture that could not be written at the end is refused at the beginning: the scene is not even read.
 cp -r "$prefix" bare
 find bare -name afterglow_image.so -delete
 if [[ -e $(sed -nE 's/^CMAKE_INSTALL_PREFIX:PATH=//p' "$AFTERGLOW_BUILD_DIR/CMakeCache.txt")/lib/afterglow/afterglow_image.so ]]; then

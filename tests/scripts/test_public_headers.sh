@@ -16,7 +16,7 @@ for header in "${headers[@]}"; do
     echo "ok: $header"
 done
 
-# What is declared: the last word before the bracket of each AG_API declaration.
+# The declared functions: of each AG_API declaration the last word before the bracket.
 cat "$root"/{threads,renderer}/include/afterglow/*.h |
     sed -nE 's/^AG_API .*[ *](ag_[a-z0-9_]+)\(.*/\1/p' | sort >"$folder/declared"
 nm --dynamic --defined-only --format=posix "$AFTERGLOW_BUILD_DIR/lib/libafterglow.so" |

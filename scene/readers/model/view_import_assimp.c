@@ -63,7 +63,7 @@ static bool has_dimming_spots(const char *maker)
     return end != version && (major < 3 || (major == 3 && minor < 5));
 }
 
-/* Whose file it is, for lamps: see blender_lamps.h. */
+/* Finds which program has written the file, on which the units of its lamps depend: see blender_lamps.h. */
 void assimp_find_maker(assimp_writer *w, const char *path)
 {
     const struct aiScene *s = w->scene;
