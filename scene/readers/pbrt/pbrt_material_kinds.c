@@ -107,19 +107,19 @@ static ag_status read_index(pbrt_parser *parser, parameter_list *list, const cha
     return AG_OK;
 }
 
-ag_status pbrt_read_conductor(pbrt_parser *parser, parameter_list *list, material *m)
+static ag_status read_conductor(pbrt_parser *parser, parameter_list *list, material *m)
 {
     AG_TRY(read_metal(parser, list, "", m));
     return read_roughness(parser, list, "", m);
 }
 
-ag_status pbrt_read_dielectric(pbrt_parser *parser, parameter_list *list, material *m)
+static ag_status read_dielectric(pbrt_parser *parser, parameter_list *list, material *m)
 {
     AG_TRY(read_index(parser, list, "eta", &m->ior));
     return read_roughness(parser, list, "", m);
 }
 
-ag_status pbrt_read_thin_dielectric(pbrt_parser *parser, parameter_list *list, material *m)
+static ag_status read_thin_dielectric(pbrt_parser *parser, parameter_list *list, material *m)
 {
     return read_index(parser, list, "eta", &m->ior);
 }
@@ -150,7 +150,7 @@ static ag_status read_coat_walk(pbrt_parser *parser, parameter_list *list, mater
     return AG_OK;
 }
 
-ag_status pbrt_read_coated_diffuse(pbrt_parser *parser, parameter_list *list, material *m)
+static ag_status read_coated_diffuse(pbrt_parser *parser, parameter_list *list, material *m)
 {
     AG_TRY(read_reflectance(parser, list, m));
     AG_TRY(read_index(parser, list, "eta", &m->ior));
@@ -158,7 +158,7 @@ ag_status pbrt_read_coated_diffuse(pbrt_parser *parser, parameter_list *list, ma
     return read_roughness(parser, list, "", m);
 }
 
-ag_status pbrt_read_coated_conductor(pbrt_parser *parser, parameter_list *list, material *m)
+static ag_status read_coated_conductor(pbrt_parser *parser, parameter_list *list, material *m)
 {
     AG_TRY(read_metal(parser, list, "conductor.", m));
     AG_TRY(read_index(parser, list, "interface.eta", &m->ior));
@@ -175,7 +175,7 @@ ag_status pbrt_read_coated_conductor(pbrt_parser *parser, parameter_list *list, 
     return AG_OK;
 }
 
-ag_status pbrt_read_diffuse(pbrt_parser *parser, parameter_list *list, material *m)
+static ag_status read_diffuse(pbrt_parser *parser, parameter_list *list, material *m)
 {
     return read_reflectance(parser, list, m);
 }
@@ -199,7 +199,7 @@ static ag_status scale_texture(pbrt_parser *parser, const parameter_list *list, 
                : status;
 }
 
-ag_status pbrt_read_diffuse_transmission(pbrt_parser *parser, parameter_list *list, material *m)
+static ag_status read_diffuse_transmission(pbrt_parser *parser, parameter_list *list, material *m)
 {
     float scale = 1.0f;
     bool ignored; /* pbrt reads it, and has no use for it */
@@ -288,7 +288,7 @@ static ag_status read_hair_color(pbrt_parser *parser, parameter_list *list, mate
     return AG_OK;
 }
 
-ag_status pbrt_read_hair(pbrt_parser *parser, parameter_list *list, material *m)
+static ag_status read_hair(pbrt_parser *parser, parameter_list *list, material *m)
 {
     static const char *const COLORS[] = {"sigma_a", "reflectance", "color", "eumelanin", "pheomelanin"};
     m->ior = 1.55f;
@@ -341,7 +341,7 @@ static ag_status read_flesh(pbrt_parser *parser, parameter_list *list, const cha
     return AG_OK;
 }
 
-ag_status pbrt_read_subsurface(pbrt_parser *parser, parameter_list *list, material *m)
+static ag_status read_subsurface(pbrt_parser *parser, parameter_list *list, material *m)
 {
     static const char *const UNUSED[] = {"reflectance", "mfp", "g", "scale", "sigma_a", "sigma_s"};
     const char *name = "";
@@ -359,7 +359,7 @@ ag_status pbrt_read_subsurface(pbrt_parser *parser, parameter_list *list, materi
     return AG_OK;
 }
 
-ag_status pbrt_read_measured(pbrt_parser *parser, parameter_list *list, material *m)
+static ag_status read_measured(pbrt_parser *parser, parameter_list *list, material *m)
 {
     const char *ignored = NULL;
     (void)m;
@@ -393,4 +393,39 @@ ag_status pbrt_read_maps(pbrt_parser *parser, parameter_list *list, material *m)
         log_at_once(parser->log, AG_LOG_WARNING, list->where, "both maps",
                     "of \"displacement\" and \"normalmap\" together only the latter is used");
     return AG_OK;
+}
+
+/* --- the table --- */
+
+/* The material has no parameters. */
+static ag_status read_interface(pbrt_parser *parser, parameter_list *list, material *m)
+{
+    (void)parser, (void)list, (void)m;
+    return AG_OK;
+}
+
+static const pbrt_material_row ROWS[] = {
+    {"diffuse", MATERIAL_DIFFUSE, read_diffuse},
+    {"diffusetransmission", MATERIAL_DIFFUSE_TRANSMISSION, read_diffuse_transmission},
+    {"conductor", MATERIAL_CONDUCTOR, read_conductor},
+    {"dielectric", MATERIAL_DIELECTRIC, read_dielectric},
+    {"thindielectric", MATERIAL_THIN_DIELECTRIC, read_thin_dielectric},
+    {"coateddiffuse", MATERIAL_COATED_DIFFUSE, read_coated_diffuse},
+    {"coatedconductor", MATERIAL_COATED_CONDUCTOR, read_coated_conductor},
+    {"mix", MATERIAL_MIX, pbrt_read_mix},
+    {"principled", MATERIAL_PRINCIPLED, pbrt_read_principled},
+    {"interface", MATERIAL_INTERFACE, read_interface},
+    {"none", MATERIAL_INTERFACE, read_interface},
+    {"", MATERIAL_INTERFACE, read_interface},
+    {"hair", MATERIAL_HAIR, read_hair},
+    {"subsurface", MATERIAL_COATED_DIFFUSE, read_subsurface},
+    {"measured", MATERIAL_DIFFUSE, read_measured},
+};
+
+const pbrt_material_row *pbrt_material_row_of(const char *name)
+{
+    for (size_t i = 0; i < sizeof ROWS / sizeof *ROWS; i++)
+        if (strcmp(name, ROWS[i].name) == 0)
+            return &ROWS[i];
+    return NULL;
 }

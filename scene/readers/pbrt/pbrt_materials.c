@@ -9,7 +9,7 @@
 
 static ag_status find_or_reserve(pbrt_parser *parser, const char *name, file_location where, uint32_t *out_index);
 
-static ag_status read_mix(pbrt_parser *parser, parameter_list *list, material *m)
+ag_status pbrt_read_mix(pbrt_parser *parser, parameter_list *list, material *m)
 {
     const parameter *names = parameter_list_find(list, "materials");
     const char *ignored;
@@ -22,50 +22,16 @@ static ag_status read_mix(pbrt_parser *parser, parameter_list *list, material *m
     return AG_OK;
 }
 
-/* The material has no parameters. */
-static ag_status read_interface(pbrt_parser *parser, parameter_list *list, material *m)
-{
-    (void)parser, (void)list, (void)m;
-    return AG_OK;
-}
-
-typedef struct material_reader {
-    const char *name;
-    material_kind kind;
-    pbrt_material_reader *read;
-} material_reader;
-
-static const material_reader READERS[] = {
-    {"diffuse", MATERIAL_DIFFUSE, pbrt_read_diffuse},
-    {"diffusetransmission", MATERIAL_DIFFUSE_TRANSMISSION, pbrt_read_diffuse_transmission},
-    {"conductor", MATERIAL_CONDUCTOR, pbrt_read_conductor},
-    {"dielectric", MATERIAL_DIELECTRIC, pbrt_read_dielectric},
-    {"thindielectric", MATERIAL_THIN_DIELECTRIC, pbrt_read_thin_dielectric},
-    {"coateddiffuse", MATERIAL_COATED_DIFFUSE, pbrt_read_coated_diffuse},
-    {"coatedconductor", MATERIAL_COATED_CONDUCTOR, pbrt_read_coated_conductor},
-    {"mix", MATERIAL_MIX, read_mix},
-    {"principled", MATERIAL_PRINCIPLED, pbrt_read_principled},
-    {"interface", MATERIAL_INTERFACE, read_interface},
-    {"none", MATERIAL_INTERFACE, read_interface},
-    {"", MATERIAL_INTERFACE, read_interface},
-    {"hair", MATERIAL_HAIR, pbrt_read_hair},
-    {"subsurface", MATERIAL_COATED_DIFFUSE, pbrt_read_subsurface},
-    {"measured", MATERIAL_DIFFUSE, pbrt_read_measured},
-};
-
 static ag_status read_material(pbrt_parser *parser, parameter_list *list, const char *type, material *out_material)
 {
-    const material_reader *reader = NULL;
     *out_material = material_make(MATERIAL_DIFFUSE);
     AG_TRY(pbrt_upgrade_material(parser, list, &type));
-    for (size_t i = 0; i < sizeof READERS / sizeof *READERS; i++)
-        if (strcmp(type, READERS[i].name) == 0)
-            reader = &READERS[i];
-    if (!reader)
+    const pbrt_material_row *row = pbrt_material_row_of(type);
+    if (!row)
         return pbrt_error(parser, list->where, strlen(list->directive), "unknown material \"%s\"", type);
-    *out_material = material_make(reader->kind);
-    AG_TRY(reader->read(parser, list, out_material));
-    if (reader->kind != MATERIAL_MIX && reader->kind != MATERIAL_INTERFACE) /* mixes have those of the two they mix */
+    *out_material = material_make(row->kind);
+    AG_TRY(row->read(parser, list, out_material));
+    if (row->kind != MATERIAL_MIX && row->kind != MATERIAL_INTERFACE) /* mixes have those of the two they mix */
         AG_TRY(pbrt_read_maps(parser, list, out_material));
     parameter_list_warn_unused(list, parser->log);
     return AG_OK;

@@ -385,13 +385,19 @@ uint32_t pbrt_use_medium(pbrt_parser *parser, size_t named);
 /* Error where a medium was used and never made. */
 ag_status pbrt_check_named_media(pbrt_parser *parser);
 
-/* pbrt_material_kinds.c: each reads its parameters into *m, which is made of its kind. The last are stand-ins for what
- * is not supported, the last for any name. */
+/* A kind of material by its name in a scene. read: reads its parameters into *m, which is made of its kind. */
 typedef ag_status pbrt_material_reader(pbrt_parser *parser, parameter_list *list, material *m);
-pbrt_material_reader pbrt_read_diffuse, pbrt_read_diffuse_transmission, pbrt_read_conductor, pbrt_read_dielectric,
-    pbrt_read_thin_dielectric, pbrt_read_coated_diffuse, pbrt_read_coated_conductor, pbrt_read_hair,
-    pbrt_read_subsurface, pbrt_read_measured, pbrt_read_principled /* pbrt_principled.c */;
-/* "displacement" and "normalmap", of all kinds but mixes. */
+typedef struct pbrt_material_row {
+    const char *name;
+    material_kind kind;
+    pbrt_material_reader *read;
+} pbrt_material_row;
+
+/* pbrt_material_kinds.c: the row of that name, or NULL. */
+const pbrt_material_row *pbrt_material_row_of(const char *name);
+/* Readers that are in files of their own: pbrt_materials.c, pbrt_principled.c. */
+pbrt_material_reader pbrt_read_mix, pbrt_read_principled;
+/* pbrt_material_kinds.c: "displacement" and "normalmap", of all kinds but mixes. */
 pbrt_material_reader pbrt_read_maps;
 
 /* pbrt_old_materials.c: where *type is one of pbrt-v3's names, makes it pbrt-v4's, and the list's parameters with
