@@ -37,13 +37,13 @@ typedef struct irradiance_counters {
     double waited_seconds;          /* CPU time of waiting */
 } irradiance_counters;
 
-/* The scratch memory of one worker: an estimate's neighbours, and the leaves of a batch's queries and the order by
- * them. */
+/* The scratch memory of one worker: for an estimate its neighbours; for a batch the leaves of its queries, and their
+ * order by these. */
 typedef struct irradiance_scratch {
     photon_neighbor *neighbors;
     photon_search_hint hint;
     uint32_t *leaves;   /* [IRRADIANCE_BATCH_MAX] */
-    uint64_t *order[2]; /* the same, from one to the other while it is sorted */
+    uint64_t *order[2]; /* of the queries, sorted from one to the other */
 } irradiance_scratch;
 
 /* The counters of one worker that any thread may read while it works; relaxed, since they order nothing else. */

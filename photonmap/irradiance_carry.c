@@ -33,7 +33,7 @@ static same_place same_place_begin(const photon_tree *tree, vec3 position, uint1
     return (same_place){tree, {position.x, position.y, position.z}, normal, 0, 1, {0}};
 }
 
-/* The next leaf that the position leads to. false: there are no more. */
+/* Goes on to the next leaf that the position leads to. Returns false where there are no more. */
 static bool next_leaf(same_place *p, uint32_t *out_block)
 {
     const uint32_t leaf_base = (1u << p->tree->depth) - 1;
@@ -71,7 +71,7 @@ typedef struct match_job {
     atomic_u32 *found_before, *found; /* a bit for each photon: it is in both */
 } match_job;
 
-/* Gives a photon another one of the map before that has the same 20 bytes. false: there is none left. */
+/* Finds for a photon one of the map before that has the same 20 bytes. Returns false where none is left. */
 static bool match(const match_job *job, const photon_block *own, uint32_t lane)
 {
     vec3 position = {own->position[0][lane], own->position[1][lane], own->position[2][lane]};

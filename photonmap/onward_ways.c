@@ -51,7 +51,7 @@ static float median_angle(const line *lines, uint32_t count, vec3 point, float *
     return angles[count / 2];
 }
 
-/* The middle of the shortest way between two lines. false: they are too parallel to tell. */
+/* Finds the middle of the shortest way between two lines. Returns false where they are too parallel to tell. */
 static bool meeting_point(const line *a, const line *b, vec3 *out_point)
 {
     vec3 between = vec3_sub(b->at, a->at);

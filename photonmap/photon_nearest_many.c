@@ -27,7 +27,8 @@ static void take(photon_query *q, const photon_lookup *lookups, const photon_vis
 }
 
 /* Puts on `leaves` which other leaves than their own the points must look at. Down to the node that has all their
- * leaves below it the way is the same for all, and only who sees the other side is asked. false: too many. */
+ * leaves below it the way is the same for all, and only who sees the other side is asked. Returns false where there are
+ * too many. */
 static bool find_other_leaves(const photon_walk *walk, const photon_lookup *lookups, uint32_t count,
                               const photon_reach *reach, photon_visits *spare, photon_visits *leaves)
 {

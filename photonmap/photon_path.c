@@ -61,7 +61,7 @@ static float keep_probability(const photon_path *path, float importance)
     return importance > 0.0f || !(path->weight < 1.0f) ? 1.0f : path->weight;
 }
 
-/* Picks the photons that are stored. false: this one is left out. */
+/* Decides whether a photon is stored, and makes up for those that are not by its flux. */
 static bool keep(photon_tracer *t, const photon_path *path, vec3 position, vec3 normal, uint64_t key, rgb *in_out_flux)
 {
     const photon_tracing_settings *settings = t->settings;
@@ -156,8 +156,8 @@ static float photon_width(const scene *s, const photon_tracing_settings *setting
     return settings->paths > 0 ? quarter_octave_nearest(width) : width;
 }
 
-/* Leaves a lamp, picked by its power or by the guide, at a time of the path's own where that matters. false: nothing
- * leaves. */
+/* Leaves a lamp, picked by its power or by the guide, at a time of the path's own where that matters. Returns false
+ * where nothing leaves. */
 static bool begin_path(photon_tracer *t, uint64_t number, photon_path *out_path)
 {
     const scene *s = t->s;

@@ -93,7 +93,7 @@ static inline bool photon_query_next(photon_query *q, float limit, uint32_t heig
     return false;
 }
 
-/* Goes on to the next leaf within the limit, and gives its block; false: there is none. */
+/* Goes on to the next leaf within the limit, and writes its block. Returns false where there is none. */
 static inline bool photon_query_next_leaf(photon_query *q, float limit, uint32_t *out_block)
 {
     photon_subtree leaf;

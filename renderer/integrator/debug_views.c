@@ -18,7 +18,7 @@ static void put(const views_job *job, film_view view, size_t pixel, float value)
         plane[pixel] = value;
 }
 
-/* Photons per area, from those that an estimate would take, though not cut off at edges. */
+/* Returns the number of photons per area, of those that an estimate would take; the disc is not cut off at edges. */
 static float photon_density(const photon_map *map, eye_worker *worker, const map_point *at)
 {
     if (map->set.count == 0)
@@ -36,7 +36,7 @@ static float photon_density(const photon_map *map, eye_worker *worker, const map
     return (float)found / (AG_PI * fmaxf(radius_squared, map->min_radius_squared));
 }
 
-/* The harmonic mean of how far gather rays go: near points weigh most, as they do for the light. */
+/* Returns the harmonic mean of how far gather rays go: near points weigh most, as they do for the light. */
 static float gather_distance(const transport *t, eye_worker *worker, const vertex *v, const sampler *where)
 {
     float sum = 0.0f;

@@ -17,7 +17,8 @@ rgb direct_light_transmittance(const transport *t, eye_worker *worker, scene_ray
                                : transmittance_of_ray(t->s, shadow, reach, &worker->rays_cut);
 }
 
-/* The lamp for a point, the numbers that sample it, and the factor by which its own density is multiplied. */
+/* Picks the lamp for a point. *in_out_u become the numbers that sample it, *out_factor the factor of its own density.
+ */
 static uint32_t pick_lamp(const transport *t, vec3 from, vec3 normal, float u_pick, vec2 *in_out_u, float *out_factor)
 {
     const direct_guide *guide = t->direct_guide;
@@ -30,7 +31,8 @@ static uint32_t pick_lamp(const transport *t, vec3 from, vec3 normal, float u_pi
     return lamp;
 }
 
-/* The lamp's probability, times the density of the guide's warp in that direction, which infinite lights alone have. */
+/* Returns the lamp's probability, times the density of the guide's warp in that direction, which infinite lights alone
+ * have. */
 static float lamp_factor(const transport *t, vec3 from, vec3 normal, uint32_t lamp, vec3 direction)
 {
     const direct_guide *guide = t->direct_guide;
@@ -72,7 +74,7 @@ rgb direct_light_from_lamp(const transport *t, eye_worker *worker, const vertex 
     return direct_light_sample_lamp(t, worker, v, lobes, u_pick, u, lamp_count, scatter_count).radiance;
 }
 
-/* by_group: light by groups of lamps, to be added to; or NULL. */
+/* Adds light to the group of its lamp, where groups are asked for. */
 static void add_to_group(rgb *by_group, const light *lamp, rgb light_brought)
 {
     if (by_group)

@@ -19,7 +19,7 @@ eye_path eye_path_begin(const camera_sample *from, int roulette_after, bool want
 
 /* --- the parts of the light --- */
 
-/* Behind a surface whose gathered lobes have this share of what it scatters there. */
+/* Returns the shares of the parts behind a surface of whose scattered light the gathered lobes have this share. */
 static part_shares shares_behind(const part_shares *before, rgb gathered)
 {
     rgb traced = rgb_sub(rgb_gray(1.0f), gathered);
@@ -33,7 +33,7 @@ static part_shares shares_behind(const part_shares *before, rgb gathered)
     return after;
 }
 
-/* The share of the gathered lobes in what these lobes scatter out of a direction. */
+/* Returns the share that the gathered ones among these lobes have in the light that they scatter out of a direction. */
 static rgb gathered_share(const bsdf *b, bsdf_lobes lobes, vec3 direction)
 {
     if (lobes != BSDF_ALL)
@@ -44,7 +44,8 @@ static rgb gathered_share(const bsdf *b, bsdf_lobes lobes, vec3 direction)
                  all.b > 0.0f ? gathered.b / all.b : 0.0f};
 }
 
-/* parts NULL: they are not asked for. is_sky: an infinite light's. Gives the factor of the light's bound. */
+/* Adds light to the sample and to the parts of it, which are NULL where nobody asks for them. is_sky: the light is an
+ * infinite light's. Returns the factor by which the light was bounded. */
 static float add_light(eye_sample *sample, const eye_path *path, const part_shares *parts, int scatterings, rgb brought,
                        bool is_sky)
 {

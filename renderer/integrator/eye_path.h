@@ -50,8 +50,8 @@ static inline float eye_path_u_lobe(const eye_path *path)
     return sampler_2d(&path->where, SAMPLE_LOBE, eye_path_key(path)).x;
 }
 
-/* Follows the ray to the first surface that scatters; false: it escapes. Fills the sample's first hit where layers ask
- * for it; sample may be NULL where none do. */
+/* Follows the ray to the first surface that scatters; returns false where it escapes. Fills the sample's first hit
+ * where layers ask for it; sample may be NULL where none do. */
 bool eye_path_trace(const transport *t, eye_worker *worker, eye_path *in_out_path, eye_sample *sample,
                     vertex *out_vertex);
 
@@ -68,7 +68,7 @@ void eye_path_add_direct(const transport *t, eye_worker *worker, const eye_path 
                          bsdf_lobes lobes, int scatter_count, eye_sample *in_out_sample);
 
 /* Sends the path on from the vertex by one of these lobes, as one of branch_count branches from there; u_lobe in [0, 1)
- * picks it. false: the path ends, by the lobes, roulette, or because it has all its scatterings. */
+ * picks it. Returns false where the path ends: by the lobes, by roulette, or because it has had all its scatterings. */
 bool eye_path_go_on(const transport *t, const vertex *v, bsdf_lobes lobes, float u_lobe, int branch_count,
                     eye_path *in_out_path);
 

@@ -13,7 +13,7 @@ typedef struct gathering {
     eye_worker *worker;
     const gather_request *request;
     float share_seen; /* the share of a ray's light that reaches the eye */
-    rgb known;        /* light that its rays brought without asking for irradiance */
+    rgb known;        /* light that its rays brought without a request for irradiance */
     uint64_t cost;    /* the cost of its rays, as eye_worker_cost has it */
 } gathering;
 
@@ -23,11 +23,11 @@ static rng ray_random(const gathering *g, uint32_t number)
     return rng_make(r->where->key, (uint64_t)r->path_vertex, (uint64_t)r->where->sample * r->count + number);
 }
 
-/* The scatterings that are left between a ray's end and the lamp. */
+/* Returns how many scatterings are left between a ray's end and the lamp. */
 static int scatterings_left(const gathering *g) { return g->request->scatterings_left - 1; }
 
-/* Finds the light behind a gather ray of that number, which has met *v, and weighs `first` at its start: asks for
- * irradiance, and adds to what is known. */
+/* Finds the light behind the gather ray of that number, which has met *v: requests irradiance at its end, and adds what
+ * it has brought on the way to what is known. first: the weight of its light at its start. */
 static void follow(gathering *g, uint32_t number, rgb first, vertex *v)
 {
     gather_end end;
@@ -145,7 +145,8 @@ static void sample_lobes(gathering *g, sampler_sequence *numbers, uint32_t begin
     }
 }
 
-/* Gathers at a plain vertex, for the side that it is seen from. */
+/* Finds the guide for gathers at a plain vertex, on the side that it is seen from. Returns false where there is none.
+ */
 static bool find_guide(const transport *t, const vertex *v, incident_guide *out_guide)
 {
     const bsdf *b = &v->scattering;

@@ -23,12 +23,13 @@ typedef struct gather_request {
 } gather_request;
 
 /* Sends the rays; what they find is added to the sample by final_gather_resolve: throughput times the radiance, from
- * the hit, of light that met at least two surfaces before the eye, the last but one of them diffuse. Gives what the
- * rays have cost, as eye_worker_cost has it. */
+ * the hit, of light that met at least two surfaces before the eye, the last but one of them diffuse. Returns the
+ * cost of the rays, as eye_worker_cost counts it. */
 uint32_t final_gather(const transport *t, eye_worker *worker, const gather_request *request);
 
 /* Gets all irradiance that the worker's gather rays ask for, follows the light of those that get none, and adds the
- * gathers that are over to their samples. Nothing is right any more once the run is cancelled. */
+ * gathers that are over to their samples. Once the run is cancelled the samples are of no use any
+ * more. */
 void final_gather_resolve(const transport *t, eye_worker *worker);
 
 #endif

@@ -4,8 +4,8 @@
 /* The index of a vertex that no path reaches: its random numbers are used for nothing else. */
 enum { ALBEDO_VERTEX = 1 << 20 };
 
-/* The albedo of a vertex: of gathered lobes in closed form, of all others by one sample, whose mean is the share of
- * light that they reflect and let through (1 for glass, the metal's colour for metal). */
+/* Returns the albedo of a vertex: of gathered lobes in closed form, of all others by one sample, whose mean is the
+ * share of light that they reflect and let through (1 for glass, the metal's colour for metal). */
 static rgb albedo_at(const vertex *v, const sampler *where)
 {
     rgb sum = rgb_add(bsdf_gathered_reflection(&v->scattering), bsdf_gathered_transmission(&v->scattering));
@@ -50,7 +50,7 @@ void first_hit_fill(const transport *t, eye_worker *worker, const vertex *v, con
     out->material_id = s->shapes[hit->shape_index].material_index + 1;
 }
 
-/* How far along the camera's axis the surface's plane goes on to the next pixel's ray. */
+/* Returns how much deeper, along the camera's axis, the surface's plane is where the next pixel's ray meets it. */
 static float slope(const transport *t, const transform *camera_from_world, const first_hit *first,
                    const film_point *from, float step_x, float step_y)
 {

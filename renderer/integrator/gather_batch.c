@@ -45,7 +45,7 @@ void gather_batch_end(gather_batch *b, rgb known)
     b->is_open = false;
 }
 
-/* The gather that a query belongs to, which is the first whose queries end behind it. */
+/* Returns the gather that a query belongs to, which is the first one whose queries end behind it. */
 static const gather *gather_of(const gather_batch *b, uint32_t query)
 {
     uint32_t low = 0, high = b->gather_count - 1;
@@ -78,8 +78,8 @@ uint32_t gather_batch_make_detours(gather_batch *b, uint32_t *in_out_query)
     return count;
 }
 
-/* The variance of a gather's light at the eye, in the mean of the three colours, by how much its rays differ. The light
- * of a single ray stands for its own deviation. */
+/* Returns the variance of a gather's light at the eye, in the mean of the three colours, by how much its rays differ.
+ * The light of a single ray stands for its own deviation. */
 static float sum_variance(const gather *g)
 {
     float count = (float)g->ray_count, sum = rgb_mean(rgb_add(g->known, g->read)), weight = rgb_mean(g->throughput);

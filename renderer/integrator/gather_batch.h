@@ -1,6 +1,6 @@
-/* gather_batch.h: a worker's gather rays that have ended and wait for the irradiance there: many, so that what they ask
- * for can be looked up, and where it is not there yet computed, in the photon map's order instead of the rays'.
- * Rests on: Neilson, Yang, TR 04-21, 2004; sorting what rays ask for, as Pharr et al., "Rendering Complex Scenes with
+/* gather_batch.h: a worker's gather rays that have ended and wait for the irradiance there. They are many, so that
+ * irradiances are looked up, and computed where they are missing, in the photon map's order instead of the rays'.
+ * Rests on: Neilson, Yang, TR 04-21, 2004; sorted requests, as in Pharr et al., "Rendering Complex Scenes with
  * Memory-Coherent Ray Tracing", 1997. Flow: final_gather adds; sample_queue takes each sample's light when all is
  * there. Threads: a batch belongs to one worker.
  *
@@ -77,12 +77,12 @@ typedef struct gather_batch {
     gathered_light gathered[GATHER_BATCH_SAMPLES]; /* by samples under way, in gathers that are over */
 } gather_batch;
 
-/* Empty; NULL when out of memory. */
+/* Returns an empty batch, or NULL when out of memory. */
 gather_batch *gather_batch_create(float most_indirect);
 void gather_batch_reset(gather_batch *b);   /* empty again, whatever it was left with */
 void gather_batch_destroy(gather_batch *b); /* NULL is fine */
 
-/* Whether there is room for one more gather, and so many queries. */
+/* Returns whether there is room for one more gather, and for so many queries. */
 static inline bool gather_batch_has_room(const gather_batch *b, uint32_t query_count)
 {
     return b->query_count + query_count <= IRRADIANCE_BATCH_MAX && b->gather_count < GATHER_BATCH_GATHERS;
@@ -104,7 +104,7 @@ static inline void gather_batch_ask(gather_batch *b, const gather_end *end, uint
     b->weights[b->query_count++] = weight;
 }
 
-/* A ray of the open gather that asks for nothing. */
+/* Notes a ray of the open gather that asks for nothing. */
 static inline void gather_batch_note(gather_batch *b, float known)
 {
     b->gathers[b->gather_count - 1].known_squares += known * known;

@@ -4,11 +4,12 @@
 #include "integrator/direct_lighting.h"
 #include "rays/transmittance.h"
 
-/* Roulette begins after this many scatterings along one gather ray; short rays bounce on at most so often (asked
- * sooner, the cache tells of the light outside of a small room). */
+/* Roulette begins after this many scatterings along one gather ray. Short rays bounce on at most so often before the
+ * cache is asked: asked sooner, in a small room, it would tell of the light outside. */
 enum { ROULETTE_AFTER = 4, SHORT_BOUNCES_MAX = 64 };
 
-/* Direct light and caustics at a diffuse vertex, as an estimate there holds them: radiance towards v's `out`. */
+/* Returns direct light and caustics at a diffuse vertex, which an estimate there would contain: radiance towards v's
+ * `out`. */
 static rgb local_light(const transport *t, eye_worker *worker, const vertex *v, float share_seen, rng *random)
 {
     float u_pick = rng_float(random), u_caustic = rng_float(random);

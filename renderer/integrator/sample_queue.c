@@ -57,7 +57,8 @@ static void scale_layers(sample_layers *layers, float factor)
         layers->groups[i] = rgb_scale(layers->groups[i], factor);
 }
 
-/* Scales all parts of a sample that is too bright alike. false: the sample was not finite. */
+/* Bounds a sample that is too bright, all its parts alike. Returns false where the sample was not finite; it is black
+ * then. */
 static bool bound_sample(const struct ag_film *film, eye_sample *sample)
 {
     const film_response *response = &film->response;

@@ -11,8 +11,8 @@ enum { BRANCHES_MAX = 8, SMOOTH_BRANCHES_MAX = 4 };
 
 static const float SQRT_2 = 1.41421356f;
 
-/* Added to the vertex where random numbers are drawn: those of paths with other numbers of branches or of gather rays
- * are of other sequences, and so are those that decide whether there is a gather ray. */
+/* Added to the vertex by which random numbers are drawn, so that paths with other numbers of branches or of gather rays
+ * have other sequences, and likewise the numbers that decide whether there is a gather ray. */
 enum { KEY_OF_BRANCHES = 1 << 16, KEY_OF_RAYS = 1 << 24, KEY_OF_CHANCE = 1 << 30 };
 
 /* The parts of the light that a diffuse vertex sends on, but for gathered light, which the sample gets later. */
@@ -21,7 +21,7 @@ typedef struct diffuse_light {
     rgb sky; /* the part of the direct light that comes from infinite lights */
 } diffuse_light;
 
-/* The exponent of the power of two that is nearest by ratio, at least 0. */
+/* Returns the exponent of the power of two that is nearest by ratio, at least 0. */
 static uint32_t nearest_bits(float wanted)
 {
     uint32_t bits = 0;
@@ -97,7 +97,8 @@ static direct_light direct_radiance(const transport *t, eye_worker *worker, cons
     return direct;
 }
 
-/* Notes in the sample what its gather rays and light samples cost, and how noisy the latter are. */
+/* Finds the light that a diffuse vertex sends on, and notes in the sample what gather rays and light samples cost, and
+ * how noisy the latter are. Where the vertex contributes little, all of it is the photon map's estimate there. */
 static diffuse_light diffuse_radiance(const transport *t, eye_worker *worker, const vertex *v,
                                       const camera_sample *from, const eye_path *path, eye_sample *sample,
                                       rgb *by_group)
@@ -135,7 +136,8 @@ static diffuse_light diffuse_radiance(const transport *t, eye_worker *worker, co
     return sum;
 }
 
-/* by_group: of the direct light; all other light came through the photon map. */
+/* Adds the light of a diffuse vertex to the sample. by_group: the direct light by groups of lamps; all other light came
+ * through the photon map, and is of no group. */
 static void add_diffuse(const transport *t, eye_sample *sample, const diffuse_light *diffuse, const eye_path *path,
                         const rgb *by_group)
 {
@@ -166,8 +168,8 @@ static void add_diffuse(const transport *t, eye_sample *sample, const diffuse_li
     }
 }
 
-/* The number of branches, as the exponent of a power of two, that the path is split into at the first vertex where it
- * is traced on. */
+/* Returns the number of branches, as the exponent of a power of two, into which the path is split at the vertex. Only
+ * the first one, where it is traced on in more than one direction, splits it. */
 static uint32_t branch_bits(const transport *t, const eye_path *path, const vertex *v)
 {
     if (path->scatterings > 0 || transport_is_open_pane(t, v) || !bsdf_has_many_ways(&v->scattering, BSDF_TRACED))

@@ -14,8 +14,8 @@ static const float SHADING_LOW_CONTRIBUTION = 0.03f;
 /* The vertex of an eye path from which on it goes on by roulette. */
 enum { SHADING_ROULETTE_AFTER = 4 };
 
-/* Adds the radiance along the ray to a sample that has nothing in it but its bounds and room for layers; what is
- * gathered the worker's batch has when it is resolved. */
+/* Adds the radiance along the ray to a sample that has nothing in it but its bounds and room for layers. Gathered light
+ * is not yet in it: the worker's batch has that once it is resolved. */
 void shading_radiance(const transport *t, eye_worker *worker, const camera_sample *from, eye_sample *in_out);
 
 #endif
