@@ -218,13 +218,13 @@ float photon_map_far(const photon_map *map)
     return FAR_SPACINGS * map->mean_radius * sqrtf(photons_each / (float)map->nearest);
 }
 
-/* The irradiance photon found, or PHOTON_HIDDEN where it does not stand for the point. */
-static uint32_t in_sight(const photon_map *map, vec3 position, vec3 normal, uint32_t found, float distance_squared,
-                         uint64_t *in_out_rays)
+/* The irradiance photon found, or PHOTON_HIDDEN where it does not stand for the point. far: photon_map_far, a division
+ * and a root for all points. */
+static uint32_t in_sight(const photon_map *map, float far, vec3 position, vec3 normal, uint32_t found,
+                         float distance_squared, uint64_t *in_out_rays)
 {
     if (found == PHOTON_NONE || !map->surfaces)
         return found;
-    float far = photon_map_far(map);
     float height = vec3_dot(vec3_sub(photon_block_position(map->irradiance_photons.blocks, found), position), normal);
     if (distance_squared <= far * far && height * height <= LEVEL_SLOPE * LEVEL_SLOPE * distance_squared)
         return found;
@@ -238,17 +238,18 @@ uint32_t photon_map_nearest(const photon_map *map, vec3 position, vec3 normal, u
     float d;
     uint32_t found =
         photon_tree_nearest(&map->irradiance_photons, position, normal, PHOTON_NEAREST_MIN_COS, nearest_reach(map), &d);
-    return in_sight(map, position, normal, found, d, in_out_rays);
+    return in_sight(map, photon_map_far(map), position, normal, found, d, in_out_rays);
 }
 
 void photon_map_nearest_many(const photon_map *map, photon_walk *walk, const photon_lookup *lookups, uint32_t count,
                              uint64_t *in_out_rays, uint32_t *out_irradiance_photons)
 {
+    const float far = photon_map_far(map);
     photon_neighbor nearest[PHOTON_LOOKUPS_MAX];
     photon_walk_nearest_many(walk, lookups, count, PHOTON_NEAREST_MIN_COS, nearest_reach(map), nearest);
     for (uint32_t i = 0; i < count; i++)
         out_irradiance_photons[i] =
-            in_sight(map, lookups[i].position, lookups[i].normal, photon_neighbor_index(nearest[i]),
+            in_sight(map, far, lookups[i].position, lookups[i].normal, photon_neighbor_index(nearest[i]),
                      photon_neighbor_distance_squared(nearest[i]), in_out_rays);
 }
 
