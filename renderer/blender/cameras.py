@@ -45,7 +45,7 @@ def crop_window(border, size):
     return ",".join(repr(min(max(edge, 0.0), 1.0)) for edge in edges)
 
 
-def _screen_window(camera, render, size, half_width_of_sensor):
+def _screen_window(camera, shift_x, render, size, half_width_of_sensor):
     """half_width_of_sensor: of the picture's longer side, or of that which the sensor is fitted to."""
     x_aspect, y_aspect = render.pixel_aspect_x, render.pixel_aspect_y
     y_over_x = y_aspect / x_aspect
@@ -54,7 +54,7 @@ def _screen_window(camera, render, size, half_width_of_sensor):
         fit = "HORIZONTAL" if size[0] * x_aspect >= size[1] * y_aspect else "VERTICAL"
     fitted = size[0] if fit == "HORIZONTAL" else y_over_x * size[1]
     half = np.array([size[0], y_over_x * size[1]]) / fitted
-    middle = 2.0 * np.array([camera.shift_x, camera.shift_y])
+    middle = 2.0 * np.array([shift_x, camera.shift_y])
     window = half_width_of_sensor * np.array([middle[0] - half[0], middle[0] + half[0],
                                               middle[1] - half[1], middle[1] + half[1]])
     return window.astype(np.float32)
@@ -88,14 +88,23 @@ def _focus(camera, world_from_camera, lens_radius):
     return {"float lensradius": lens_radius, "float focaldistance": max(depth, 1e-5)}
 
 
-def add_camera(scene, camera_object, render, motion, notes):
-    """Sets the camera of the renderer's scene to a Blender object. Errors: RuntimeError, where it is no camera."""
+def _view_matrix(engine, camera_object):
+    """Where the active view of several is, as seen from the camera's own place."""
+    own, view = (unscaled(matrix_of(m)) for m in (camera_object.matrix_world, engine.camera_model_matrix(camera_object)))
+    return np.linalg.inv(own) @ view
+
+
+def add_camera(scene, camera_object, render, motion, notes, engine=None):
+    """Sets the camera of the renderer's scene to a Blender object; engine: to its active view, of several. Errors:
+    RuntimeError, where it is no camera."""
     if camera_object.type != "CAMERA":
         raise RuntimeError(f'the scene\'s camera "{camera_object.name}" is a {camera_object.type.lower()}, no camera')
     camera, size = camera_object.data, picture_size(render)
-    start, end = motion.of_camera(matrix_of(camera_object.matrix_world))
-    world_from_camera = unscaled(start) @ _FLIPPED_Z
-    world_from_camera_end = None if end is None else unscaled(end) @ _FLIPPED_Z
+    start, end = motion.of_camera(camera_object.name, matrix_of(camera_object.matrix_world))
+    view = _view_matrix(engine, camera_object) if engine else np.eye(4)
+    shift_x = engine.camera_shift_x(camera_object) if engine else camera.shift_x
+    world_from_camera = unscaled(start) @ view @ _FLIPPED_Z
+    world_from_camera_end = None if end is None else unscaled(end) @ view @ _FLIPPED_Z
     if camera.type == "PANO":
         notes.say(f'camera "{camera_object.name}": panoramas are not translated, it is a perspective camera here')
     if camera.type == "ORTHO":
@@ -105,7 +114,7 @@ def add_camera(scene, camera_object, render, motion, notes):
         sensor = camera.sensor_height if camera.sensor_fit == "VERTICAL" else camera.sensor_width
         kind, parameters, half = "perspective", {"float fov": 90}, sensor / camera.lens / 2
         lens_radius = 0.5e-3 * camera.lens / max(camera.dof.aperture_fstop, 1e-5)
-    parameters["float screenwindow"] = _screen_window(camera, render, size, half)
+    parameters["float screenwindow"] = _screen_window(camera, shift_x, render, size, half)
     if camera.dof.use_dof:
         parameters.update(_focus(camera, world_from_camera, lens_radius))
         if camera.dof.aperture_blades or camera.dof.aperture_ratio != 1:

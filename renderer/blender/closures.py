@@ -1,6 +1,6 @@
 """Shaders of a node tree as a material of the renderer, emission and alpha."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Optional
 
 import numpy as np
@@ -9,40 +9,55 @@ from . import materials
 from .nodes import source
 
 
-@dataclass
+_MIXES_MOST = 16  # the renderer's
+
+
+@dataclass(frozen=True)
 class Surface:
     """kind and parameters: of the renderer's material; kind None: it reflects nothing. parts: of a mix, the surfaces.
     emission: radiance, (3,) or a picture; alpha: a number or a picture; None: 0, and 1. is_transparent: it lets all
-    pass."""
+    pass. depth: of the mixes in it."""
     kind: Optional[str] = None
     parameters: dict = field(default_factory=dict)
     parts: tuple = ()
     emission: Optional[np.ndarray] = None
     alpha: Optional[np.ndarray] = None
     is_transparent: bool = False
+    depth: int = 0
 
 
 def add_material(baker, name, surface):
-    """Makes the material of that name, and those that it mixes."""
+    """Makes the material of that name, and those that it mixes, each once."""
     if surface.is_transparent:
         baker.scene.material(name, "interface")
         return
     parameters = dict(surface.parameters)
     if surface.parts:
-        names = [f"{name}|{k}" for k in range(2)]
-        for part_name, part in zip(names, surface.parts):
-            add_material(baker, part_name, part)
-        parameters["string materials"] = names
+        parameters["string materials"] = [_part_name(baker, part) for part in surface.parts]
     if surface.kind is None:
         parameters["rgb reflectance"] = (0, 0, 0)
     baker.scene.material(name, surface.kind or "diffuse", parameters)
 
 
+def _part_name(baker, part):
+    if id(part) not in baker.part_names:
+        name = baker.part_names[id(part)] = f"{baker.name}|{len(baker.part_names)}"
+        add_material(baker, name, part)
+    return baker.part_names[id(part)]
+
+
 def translate(baker, socket, path):
+    """A shader that several others share is translated once."""
     output, _, path = source(socket, path)
     if output is None:
         return Surface()
-    node = output.node
+    key = output.as_pointer(), path
+    if key not in baker.surfaces:
+        baker.surfaces[key] = _make(baker, output.node, path)
+    return baker.surfaces[key]
+
+
+def _make(baker, node, path):
     maker = _SHADERS.get(node.type)
     if maker is None:
         baker.graph.skip(node, "a grey diffuse surface stands in")
@@ -204,14 +219,13 @@ def _times(a, b):
 def _mix(baker, node, path):
     first, second = (translate(baker, node.inputs[k], path) for k in (1, 2))
     amount = np.clip(baker.bake(node.inputs["Fac"], path, False), 0, 1)
-    if amount.ndim == 0 and amount in (0, 1):
-        return second if amount == 1 else first
+    if first is second or (amount.ndim == 0 and amount in (0, 1)):
+        return second if amount.ndim == 0 and amount == 1 else first
     if first.is_transparent or second.is_transparent:
         solid, share = (second, amount) if first.is_transparent else (first, 1 - amount)
         if solid.is_transparent:
             return solid
-        solid.alpha = share if solid.alpha is None else _times(solid.alpha, share)
-        return solid
+        return replace(solid, alpha=share if solid.alpha is None else _times(solid.alpha, share))
     a, b = _scaled(first.emission, 1 - amount), _scaled(second.emission, amount)
     emission = a if b is None else b if a is None else _sum(*_stretched(a, b))
     if first.alpha is not None or second.alpha is not None:
@@ -221,7 +235,15 @@ def _mix(baker, node, path):
         alpha = None
     if first.kind is None and second.kind is None:
         return Surface(None, emission=emission, alpha=alpha)
-    return Surface("mix", baker.parameter("amount", amount, False), parts=(first, second), emission=emission, alpha=alpha)
+    return _mixed(baker, node, baker.parameter("amount", amount, False), (first, second), emission=emission, alpha=alpha)
+
+
+def _mixed(baker, node, amount, parts, **rest):
+    depth = 1 + max(part.depth for part in parts)
+    if depth > _MIXES_MOST:
+        baker.graph.skip(node, f"of {depth} mixes within one another the innermost {_MIXES_MOST} stand in")
+        return replace(max(parts, key=lambda part: part.depth), **rest)
+    return Surface("mix", amount, parts=parts, depth=depth, **rest)
 
 
 def _add(baker, node, path):
@@ -229,14 +251,14 @@ def _add(baker, node, path):
     solid, other = (second, first) if first.kind is None and not second.is_transparent else (first, second)
     if other.kind is not None:
         baker.graph.skip(node, "of two surfaces the mean stands in")
-        return Surface("mix", {"float amount": 0.5}, parts=(first, second), emission=_sum(first.emission, second.emission))
+        return _mixed(baker, node, {"float amount": 0.5}, (first, second), emission=_sum(first.emission, second.emission))
     if first.emission is not None and second.emission is not None:
-        solid.emission = _sum(*_stretched(first.emission, second.emission))
+        emission = _sum(*_stretched(first.emission, second.emission))
     else:
-        solid.emission = _sum(first.emission, second.emission)
-    if solid.is_transparent and solid.emission is not None:
-        return Surface(None, emission=solid.emission)
-    return solid
+        emission = _sum(first.emission, second.emission)
+    if solid.is_transparent and emission is not None:
+        return Surface(None, emission=emission)
+    return replace(solid, emission=emission)
 
 
 def _subsurface(baker, node, path):

@@ -7,7 +7,7 @@ import weakref
 import bpy
 import numpy as np
 
-from . import cameras, library, motion, passes, translation, untranslated, view_drawing, viewport
+from . import cameras, cryptomatte, library, motion, passes, translation, untranslated, view_drawing, viewport
 from .notes import Notes
 
 _PHASES = ("Reading", "Building trees", "Tracing photons", "Building maps", "Computing irradiance", "Rendering", "Writing")
@@ -151,10 +151,26 @@ class _Frame:
             untranslated.tell(self._scene, self._layer, self._notes)
             self._hint(scene)
             moved = motion.look_ahead(self._engine, self._depsgraph, self._notes)
-            translation.translate(scene, self._depsgraph, moved, self._notes, self._poll)
+            mattes = passes.crypto_kinds(self._layer)
+            names = translation.translate(scene, self._depsgraph, moved, self._notes, self._poll, is_by_name=bool(mattes))
+            for kind, place in mattes:
+                self._tell_names(cryptomatte.metadata(self._layer.name, kind, names[place]))
             scene.complete(self._watch_phase)
-            with scene.rendering(poll=self._watch_phase, **self._library_settings(size, border)) as rendering:
-                self._refine(rendering)
+            for view in self._views():
+                if view:
+                    self._engine.active_view_set(view)
+                    cameras.add_camera(scene, self._engine.camera_override, render, moved, self._notes, self._engine)
+                with scene.rendering(poll=self._watch_phase, **self._library_settings(size, border)) as rendering:
+                    self._refine(rendering, view)
+
+    def _views(self):
+        """Names of the views to be rendered; "" where there is one alone."""
+        return [view.name for view in self._engine.get_result().views] if self._scene.render.use_multiview else [""]
+
+    def _tell_names(self, fields):
+        result = self._engine.get_result()
+        for field, value in fields.items():
+            result.stamp_data_add_field(field, value)
 
     def _hint(self, scene):
         cycles = getattr(self._scene, "cycles", None)
@@ -168,10 +184,10 @@ class _Frame:
         phase, fraction = self._progress
         self._engine.update_stats("", f"{_PHASES[phase]} {100 * fraction:.0f} %")
 
-    def _refine(self, rendering):
+    def _refine(self, rendering, view):
         """All samples in passes, each twice as many as before, and the picture shown as it grows."""
         height, width = rendering.shape
-        result = self._engine.begin_result(0, 0, width, height, layer=self._layer.name)
+        result = self._engine.begin_result(0, 0, width, height, layer=self._layer.name, view=view)
         most, samples = self._settings.samples, 1
         is_whole = False
         try:

@@ -3,13 +3,13 @@
 import numpy as np
 
 
-def _add_strand(scene, points, radius_root, radius_tip, material, world_from_shape):
+def _add_strand(scene, name, points, radius_root, radius_tip, material, world_from_shape):
     """A strand through its points: a spline that is doubled at both ends passes near all of them."""
     if len(points) < 2 or not np.isfinite(points).all():
         return
     knots = np.concatenate([points[:1], points[:1], points, points[-1:], points[-1:]])
     scene.shape("curve", {"point3 P": knots, "string basis": "bspline", "string type": "cylinder",
-                          "float width0": 2 * radius_root, "float width1": 2 * radius_tip},
+                          "float width0": 2 * radius_root, "float width1": 2 * radius_tip, "string name": name},
                 material=material, world_from_shape=world_from_shape)
 
 
@@ -32,7 +32,7 @@ def _add_system(scene, owner, modifier, materials, poll):
         points = points[np.concatenate([[True], np.abs(np.diff(points, axis=0)).max(axis=1) > 0])]
         if len(points) > 1 and not points[-1].any():
             points = points[:-1]
-        _add_strand(scene, points, settings.root_radius * scale, tip, look.name, None)
+        _add_strand(scene, owner.name, points, settings.root_radius * scale, tip, look.name, None)
 
 
 def add_particle_hair(scene, owner, materials, poll):
@@ -60,4 +60,5 @@ def add_curves(scene, owner, matrix, materials, poll):
             poll()
         first, count = curve.first_point_index, curve.points_length
         if count > 1:
-            _add_strand(scene, positions[first:first + count], radii[first], radii[first + count - 1], look.name, matrix)
+            _add_strand(scene, owner.name, positions[first:first + count], radii[first], radii[first + count - 1], look.name,
+                        matrix)

@@ -24,11 +24,23 @@ class MaterialSheet(Sheet):
         self._layout = layout
 
     def relative(self, layout):
-        """None where it is the sheet's own."""
-        own = np.vstack([self._layout[1], [0, 0, 1]])
-        if np.allclose(own, np.vstack([layout[1], [0, 0, 1]])) or abs(np.linalg.det(own)) < 1e-12:
+        """From the sheet's square to the picture's, 2 x 3; None where it is the sheet's own, or has no such matrix."""
+        own, other = (_flat(one) for one in (self._layout, layout))
+        if _is_same(self._layout, layout) or own is None or other is None or abs(np.linalg.det(own)) < 1e-12:
             return None
-        return (np.vstack([layout[1], [0, 0, 1]]) @ np.linalg.inv(own))[:2]
+        return (other @ np.linalg.inv(own))[:2]
+
+
+def _is_same(a, b):
+    return a[0] == b[0] and np.allclose(a[1], b[1])
+
+
+def _flat(layout):
+    """Its matrix in the plane of the source's first two coordinates, 3 x 3; None where there is none."""
+    (_, _, projection), matrix = layout
+    if projection != "FLAT" or np.abs(matrix[:2, 2]).max() > 1e-6 * np.abs(matrix[:2, :3]).max():
+        return None
+    return np.vstack([matrix[:2][:, [0, 1, 3]], [0, 0, 1]])
 
 
 def _way_of(node):
@@ -47,6 +59,7 @@ class Baker:
         self._way = {}
         self._made = {}
         self.count = 0
+        self.surfaces, self.part_names = {}, {}  # of shaders, and of surfaces that a mix has (closures.py)
 
     def look_for_layout(self, socket):
         found = self.graph.pictures(socket)
@@ -55,11 +68,12 @@ class Baker:
             return
         self._way = _way_of(found[0][0])
         self.layout = layouts[0]
-        for layout in layouts[1:]:
-            if layout[0] != self.layout[0]:
-                self.notes.say(f'material "{self.name}": its pictures lie by several coordinates: the first counts')
-            elif not np.allclose(layout[1], self.layout[1]):
-                self.layout = (self.layout[0], np.eye(3)[:2])  # they repeat by a common square
+        if all(_is_same(layout, layouts[0]) for layout in layouts):
+            return
+        if any(layout[0] != layouts[0][0] or _flat(layout) is None for layout in layouts):
+            self.notes.say(f'material "{self.name}": its pictures lie by several coordinates: the first counts')
+        else:
+            self.layout = layouts[0][0], np.eye(4)[:3]  # they repeat by a common square
 
     def bake(self, socket, path, is_color, change=None):
         """A constant (3,) or (), or an array of the sheet's size; change: applied to what the sockets say."""
@@ -100,7 +114,7 @@ class Baker:
         image = output.node.image
         if not image or image.is_float or pictures.is_linear(image, self.notes):
             return None
-        if self.layout and not np.allclose(self.graph.layout(output.node, path)[1], self.layout[1]):
+        if self.layout and not _is_same(self.graph.layout(output.node, path), self.layout):
             return None
         key = image.as_pointer(), output.node.extension, output.node.interpolation, scale
         if key not in self._made:
@@ -134,12 +148,16 @@ class Baker:
 
 
 class Materials:
-    """The looks of the materials that meshes ask for, each made once."""
+    """The looks of the materials that meshes ask for, each made once. override: a material instead of all, or None."""
 
-    def __init__(self, scene, notes):
-        self._scene, self._notes, self._looks = scene, notes, {}
+    def __init__(self, scene, notes, override):
+        self._scene, self._notes, self._override, self._looks = scene, notes, override, {}
+
+    def names(self):
+        return [look.name for look in self._looks.values()]
 
     def look(self, material):
+        material = self._override or material
         key = material.name_full if material else None
         if key not in self._looks:
             self._looks[key] = self._make(material)

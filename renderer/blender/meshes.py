@@ -23,20 +23,41 @@ def _uvs(mesh, name):
     return _array(layer.data, "uv", 2, np.float32) if layer else np.zeros((len(mesh.loops), 2), np.float32)
 
 
+def _box(mesh, points, loop_count):
+    """As Cycles projects a picture onto the six sides of a box, for each loop by its face's normal."""
+    normals = _array(mesh.polygons, "normal", 3, np.float32)[_faces_of_loops(mesh, loop_count)]
+    axis = np.abs(normals).argmax(axis=-1)
+    is_ahead = np.take_along_axis(normals, axis[:, None], 1)[:, 0] > 0
+    x, y, z = points.T
+    u, v = np.choose(axis, [y, x, y]), np.choose(axis, [z, z, x])
+    return np.stack([np.where(np.choose(axis, [~is_ahead, is_ahead, is_ahead]), 1 - u, u), v], -1)
+
+
 def _layout(mesh, how, positions, loop_vertices):
-    """The coordinates of a material's pictures, of the loops; how: None, or a source and an affine matrix, 2 x 3."""
+    """The coordinates of a material's pictures, of the loops; how: None, or as Graph.layout in nodes.py gives it."""
     if not how:
         return None
-    source, matrix = how
-    if source[0] == "UV":
-        uvs = _uvs(mesh, source[1])
+    (source, name, projection), matrix = how
+    if source == "UV":
+        uvs = _uvs(mesh, name)
+        space = np.concatenate([uvs, np.zeros((len(uvs), 1), np.float32)], 1)
     else:
         space = positions
-        if source[0] == "GENERATED":
+        if source == "GENERATED":
             low, high = positions.min(axis=0), positions.max(axis=0)
-            space = (positions - low) / np.maximum(high - low, 1e-30)
-        uvs = space[loop_vertices][:, :2]
-    return np.ascontiguousarray(uvs @ matrix[:, :2].T + matrix[:, 2], np.float32)
+            space = np.where(high > low, (positions - low) / np.maximum(high - low, 1e-30), 0.5)
+        space = space[loop_vertices]
+    points = space @ matrix[:, :3].T + matrix[:, 3]
+    points = _box(mesh, points, len(loop_vertices)) if projection == "BOX" else points[:, :2]
+    return np.ascontiguousarray(points, np.float32)
+
+
+def _faces_of_loops(mesh, loop_count):
+    starts, counts = _array(mesh.polygons, "loop_start", 1, np.int32), _array(mesh.polygons, "loop_total", 1, np.int32)
+    face_of = np.empty(loop_count, np.int64)
+    at = np.repeat(starts - np.cumsum(counts) + counts, counts) + np.arange(counts.sum())  # loops, face by face
+    face_of[at] = np.repeat(np.arange(len(starts)), counts)
+    return face_of
 
 
 def _unit(vectors):
@@ -48,9 +69,7 @@ def _plain_normals(mesh, positions, loop_vertices, is_smooth):
     but for the order in which its threads add, so that their last bits differ from time to time."""
     starts, counts = _array(mesh.polygons, "loop_start", 1, np.int32), _array(mesh.polygons, "loop_total", 1, np.int32)
     faces = _array(mesh.polygons, "normal", 3, np.float32).astype(np.float64)
-    face_of = np.empty(len(loop_vertices), np.int64)
-    at = np.repeat(starts - np.cumsum(counts) + counts, counts) + np.arange(counts.sum())  # loops, face by face
-    face_of[at] = np.repeat(np.arange(len(starts)), counts)
+    face_of = _faces_of_loops(mesh, len(loop_vertices))
     loops = np.arange(len(loop_vertices))
     first, last = starts[face_of], (starts + counts - 1)[face_of]
     corners = positions[loop_vertices].astype(np.float64)

@@ -15,7 +15,7 @@ def _poses(depsgraph):
     poses = {_key(instance): cameras.matrix_of(instance.matrix_world) for instance in depsgraph.object_instances}
     camera = depsgraph.scene_eval.camera
     if camera:
-        poses["camera"] = cameras.matrix_of(camera.evaluated_get(depsgraph).matrix_world)
+        poses["camera", camera.name] = cameras.matrix_of(camera.evaluated_get(depsgraph).matrix_world)
     return poses
 
 
@@ -35,8 +35,8 @@ class Motion:
         """Its matrix when the shutter opens, and when it closes; the latter None where it stands still."""
         return self._pair(_key(instance), matrix)
 
-    def of_camera(self, matrix):
-        return self._pair("camera", matrix)
+    def of_camera(self, name, matrix):
+        return self._pair(("camera", name), matrix)
 
 
 def look_ahead(engine, depsgraph, notes):

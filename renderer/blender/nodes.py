@@ -92,28 +92,31 @@ class Graph:
         return found
 
     def layout(self, node, path):
-        """How a picture lies: ((source, name of the uv map), affine matrix 2 x 3)."""
+        """How a picture lies: ((source, name of the uv map, "FLAT" or "BOX"), affine matrix 3 x 4). Of what the matrix
+        makes of the source's coordinates a flat picture takes the first two, a box the two across the face's axis."""
         matrix = np.eye(4)
         output, _, path = source(node.inputs["Vector"], path)
         while output is not None and output.node.type == "MAPPING":
             matrix = matrix @ node_math.mapping_matrix(output.node, lambda s: self.constant(s, path), self)
             output, _, path = source(output.node.inputs["Vector"], path)
-        where = ("UV", "")
+        where = "UV", ""
         if output is not None:
             inner = output.node
             if inner.type == "UVMAP":
-                where = ("UV", inner.uv_map)
+                where = "UV", inner.uv_map
             elif inner.type == "TEX_COORD" and output.name in ("UV", "Generated", "Object"):
-                where = (output.name.upper(), "")
+                where = output.name.upper(), ""
                 if inner.object:
                     self.skip(inner, "another object's coordinates are its own")
             else:
                 self.skip(inner, "pictures lie by the uv map")
-        if where[0] != "UV" and np.abs(matrix[:2, 2]).max() > 1e-6 * np.abs(matrix[:2, :3]).max():
-            self.notes.say(f"{self._name}: a picture that is turned about x or y lies as seen from above")
-        if getattr(node, "projection", "FLAT") != "FLAT":
-            self.notes.say(f'{self._name}: a picture lies flat here, by no "{node.projection.lower()}"')
-        return where, matrix[:2][:, [0, 1, 3]]
+        projection = getattr(node, "projection", "FLAT")
+        if projection not in ("FLAT", "BOX"):
+            self.notes.say(f'{self._name}: a picture lies flat here, by no "{projection.lower()}"')
+            projection = "FLAT"
+        if projection == "BOX" and node.projection_blend > 0:
+            self.notes.say(f"{self._name}: the sides of a picture's box are not blended")
+        return (*where, projection), matrix[:3]
 
     def constant(self, socket, path):
         return self.value(socket, path, None)[0]

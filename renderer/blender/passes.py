@@ -11,6 +11,7 @@ _DEPTH = Pass("Depth", "Z", "VALUE", "Z", ("Z",))
 _NORMAL = Pass("Normal", "XYZ", "VECTOR", "N", ("N.X", "N.Y", "N.Z"))
 _POSITION = Pass("Position", "XYZ", "VECTOR", "P", ("P.X", "P.Y", "P.Z"))
 _UV = Pass("UV", "UVA", "VECTOR", "uv", ("u", "v", "A"))
+_CRYPTO_LEVELS = 3  # two ranks each
 _OWN = {name: Pass(title, "RGB", "COLOR", layer, tuple(f"{layer}.{c}" for c in "RGB")) for name, title, layer in (
     ("use_albedo", "Albedo", "albedo"), ("use_emission", "Emission", "emission"), ("use_direct", "Direct", "direct"),
     ("use_indirect", "Indirect", "indirect"), ("use_caustic", "Caustic", "caustic"),
@@ -27,6 +28,12 @@ def group_of(owner):
     return {"string lightgroup": group_name(owner.lightgroup)} if owner.lightgroup else {}
 
 
+def crypto_kinds(view_layer):
+    """The Cryptomattes that the view layer asks for: "object" is 0, "material" 1 among the names of a translation."""
+    kinds = ("object", view_layer.use_pass_cryptomatte_object), ("material", view_layer.use_pass_cryptomatte_material)
+    return [(kind, place) for place, (kind, is_asked) in enumerate(kinds) if is_asked]
+
+
 def passes_of(view_layer):
     """Those that the view layer asks for beside Combined."""
     asked = []
@@ -38,6 +45,10 @@ def passes_of(view_layer):
         asked.append(_POSITION)
     if view_layer.use_pass_uv:
         asked.append(_UV)
+    for kind, _ in crypto_kinds(view_layer):
+        for level in range(min((view_layer.pass_cryptomatte_depth + 1) // 2, _CRYPTO_LEVELS)):
+            name = f"Crypto{kind.title()}{level:02d}"
+            asked.append(Pass(name, "RGBA", "COLOR", f"crypto_{kind}", tuple(f"{name}.{c}" for c in "RGBA")))
     own = view_layer.afterglow
     asked += [found for name, found in _OWN.items() if getattr(own, name)]
     for group in view_layer.lightgroups:

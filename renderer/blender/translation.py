@@ -45,10 +45,10 @@ def _model(instance_object, materials, name, notes):
     return _Model(name, parts, looks, group_of(instance_object))
 
 
-def _key(instance_object):
+def _key(instance_object, is_by_name):
     data = instance_object.data
     slots = tuple(slot.material.name_full if slot.material else "" for slot in instance_object.material_slots)
-    return data.as_pointer(), slots, instance_object.lightgroup
+    return data.as_pointer(), slots, instance_object.lightgroup, instance_object.name if is_by_name else ""
 
 
 _VISIBILITIES = {"visible_camera": "camera", "visible_diffuse": "diffuse", "visible_glossy": "glossy",
@@ -70,7 +70,8 @@ def _add_part(scene, model, part, **where):
     light = look.light
     if light is not None:
         light = {**light, **model.group}
-    scene.shape("trianglemesh", {**meshes.parameters_of(part), **look.shape}, material=look.name, light=light, **where)
+    scene.shape("trianglemesh", {**meshes.parameters_of(part), **look.shape, "string name": model.name},
+                material=look.name, light=light, **where)
 
 
 def _is_flat(matrix):
@@ -100,40 +101,50 @@ def _add_model(scene, model):
         scene.instance(model.name, place, end)
 
 
-def translate(scene, depsgraph, motion, notes, poll, view=None):
+def translate(scene, depsgraph, motion, notes, poll, view=None, is_by_name=False):
     """Fills an empty scene, up to its completion. view: instead of the scene's camera (cameras.View). motion: see
-    motion.py. poll: called between objects; an exception there ends it."""
-    blender_scene = depsgraph.scene_eval
+    motion.py. poll: called between objects; an exception there ends it. is_by_name: each object keeps its name for
+    Cryptomattes, so that those with a mesh in common have one each. Gives the names of objects and of materials."""
+    blender_scene, layer = depsgraph.scene_eval, depsgraph.view_layer_eval
     if view:
         cameras.add_view(scene, view)
     elif blender_scene.camera is None:
         raise RuntimeError("the scene has no camera")
     else:
         cameras.add_camera(scene, blender_scene.camera.evaluated_get(depsgraph), blender_scene.render, motion, notes)
-    materials, models, lights = Materials(scene, notes), {}, []
+    materials, models = Materials(scene, notes, layer.material_override), {}
+    taken, hairy = set(), set()  # names of models; of what has hair
     for instance in depsgraph.object_instances:
         poll()
         shown = instance.object
-        if instance.show_particles and not instance.is_instance and shown.type == "MESH":
+        if layer.use_strand and instance.show_particles and not instance.is_instance and shown.type == "MESH":
             hair.add_particle_hair(scene, shown, materials, poll)
+            hairy.add(shown.name)
         if not instance.show_self:
             continue
         _tell_visibility(shown, notes)
         matrix = cameras.matrix_of(instance.matrix_world)
         if shown.type == "LIGHT":
             lamps.add_lamp(scene, shown, matrix, notes)
-        elif shown.type in _SURFACES:
-            key = _key(shown)
+        elif shown.type in _SURFACES and layer.use_solid:
+            key = _key(shown, is_by_name)
             if key not in models:
-                models[key] = _model(shown, materials, f"{shown.name_full}#{len(models)}", notes)
+                name = shown.name
+                if not is_by_name or name in taken:
+                    name = f"{name}#{len(models)}"
+                taken.add(name)
+                models[key] = _model(shown, materials, name, notes)
             if models[key]:
                 models[key].places.append(motion.of_instance(instance, matrix))
-        elif shown.type == "CURVES":
+        elif shown.type == "CURVES" and layer.use_strand:
             hair.add_curves(scene, shown, matrix, materials, poll)
+            hairy.add(shown.name)
         elif shown.type in ("VOLUME", "POINTCLOUD", "GPENCIL"):
             notes.say(f'object "{shown.name}": a {shown.type.lower()} is not translated')
     for model in models.values():
         poll()
         if model:
             _add_model(scene, model)
-    worlds.add_world(scene, blender_scene.world, notes)
+    if layer.use_sky:
+        worlds.add_world(scene, blender_scene.world, notes)
+    return hairy.union(model.name for model in models.values() if model), set(materials.names())

@@ -1,6 +1,7 @@
 """What of scene, view layer and world has no counterpart in the renderer, told once each."""
 
-_PASSES_MADE = {"use_pass_combined", "use_pass_z", "use_pass_normal", "use_pass_position", "use_pass_uv"}
+_PASSES_MADE = {"use_pass_combined", "use_pass_z", "use_pass_normal", "use_pass_position", "use_pass_uv",
+                "use_pass_cryptomatte_object", "use_pass_cryptomatte_material"}
 _CLIP_START_M = 0.5  # nearer to the camera there is seldom anything
 _RAYS = ("camera", "diffuse", "glossy", "transmission")
 
@@ -12,15 +13,10 @@ def _collections(layer_collection):
 
 
 def _tell_layer(layer, notes):
-    if layer.material_override:
-        notes.say(f'view layer "{layer.name}": its override is left out, objects keep their own materials')
     for collection in _collections(layer.layer_collection):
         for name, kind in (("holdout", "holdout"), ("indirect_only", "indirect only")):
             if getattr(collection, name):
                 notes.say(f'collection "{collection.name}": "{kind}" is not translated, it is seen as any other')
-    for name, what in (("use_sky", "the world"), ("use_solid", "surfaces")):
-        if not getattr(layer, name):
-            notes.say(f'view layer "{layer.name}": {what} cannot be left out')
     for item in layer.bl_rna.properties:
         if (item.type == "BOOLEAN" and not item.is_array and item.identifier.startswith("use_pass_")
                 and "accurate" not in item.identifier  # a way to make another pass
@@ -42,8 +38,6 @@ def tell(scene, layer, notes):
         _tell_world(scene.world, notes)
     if scene.camera and scene.camera.type == "CAMERA" and scene.camera.data.clip_start > _CLIP_START_M:
         notes.say(f'camera "{scene.camera.name}": nothing is clipped, from the camera on all is seen')
-    if scene.render.use_multiview:
-        notes.say("of several views one is rendered, the camera's own")
     cycles = getattr(scene, "cycles", None)
     if cycles and scene.render.film_transparent and cycles.film_transparent_glass:
         notes.say("the film is not transparent behind glass")

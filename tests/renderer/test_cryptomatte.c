@@ -82,18 +82,18 @@ static double matte_of(const ag_film *film, const cryptomatte *matte, const char
 static void test_scene(void **state)
 {
     (void)state;
-    studio *s =
-        studio_open("Film \"rgb\" PixelFilter \"box\" Camera \"perspective\" \"float fov\" 90 WorldBegin\n"
-                    "LightSource \"infinite\"\n"
-                    "MakeNamedMaterial \"brick \\\"red\\\"\" \"string type\" \"diffuse\"\n"
-                    "MakeNamedMaterial \"stone\" \"string type\" \"diffuse\"\n"
-                    "ObjectBegin \"coin\" Material \"conductor\" Shape \"disk\" \"float radius\" 0.2 ObjectEnd\n"
-                    "NamedMaterial \"brick \\\"red\\\"\"\n"
-                    "Shape \"bilinearmesh\" \"point3 P\" [-9 -9 2  0.1 -9 2  -9 0 2  0.1 0 2]\n"
-                    "NamedMaterial \"stone\"\n"
-                    "Shape \"bilinearmesh\" \"point3 P\" [0.1 -9 2  9 -9 2  0.1 0 2  9 0 2]\n"
-                    "Translate 0.8 -0.8 1 ObjectInstance \"coin\"",
-                    2);
+    studio *s = studio_open(
+        "Film \"rgb\" PixelFilter \"box\" Camera \"perspective\" \"float fov\" 90 WorldBegin\n"
+        "LightSource \"infinite\"\n"
+        "MakeNamedMaterial \"brick \\\"red\\\"\" \"string type\" \"diffuse\"\n"
+        "MakeNamedMaterial \"stone\" \"string type\" \"diffuse\"\n"
+        "ObjectBegin \"coin\" Material \"conductor\" Shape \"disk\" \"float radius\" 0.2 ObjectEnd\n"
+        "NamedMaterial \"brick \\\"red\\\"\"\n"
+        "Shape \"bilinearmesh\" \"string name\" \"left \\\"wall\\\"\" \"point3 P\" [-9 -9 2  0.1 -9 2  -9 0 2  0.1 0 2]\n"
+        "NamedMaterial \"stone\"\n"
+        "Shape \"bilinearmesh\" \"point3 P\" [0.1 -9 2  9 -9 2  0.1 0 2  9 0 2]\n"
+        "Translate 0.8 -0.8 1 ObjectInstance \"coin\"",
+        2);
     s->settings.integrator = AG_INTEGRATOR_PATH;
     s->settings.samples_per_pixel = 64;
     s->settings.layers = AG_LAYER_CRYPTO_OBJECT | AG_LAYER_CRYPTO_MATERIAL;
@@ -110,6 +110,8 @@ static void test_scene(void **state)
     int row = 12 * 16; /* y from -1 to -1.25 */
     expect_within("brick at the left", matte_of(film, &materials, "brick \"red\"", row), 1.0, 0.0);
     expect_within("stone at the right", matte_of(film, &materials, "stone", row + 10), 1.0, 0.0);
+    expect_within("the wall at the left", matte_of(film, &objects, "left \"wall\"", row), 1.0, 0.0);
+    expect_within("the wall's share", matte_of(film, &objects, "left \"wall\"", row + 8), 0.4, 0.03);
     expect_within("brick's share", matte_of(film, &materials, "brick \"red\"", row + 8), 0.4, 0.03);
     expect_within("stone's share", matte_of(film, &materials, "stone", row + 8), 0.6, 0.03);
     expect_within("nothing", matte_of(film, &materials, "stone", 15), 0.0, 0.0);
@@ -124,6 +126,31 @@ static void test_scene(void **state)
     cryptomatte_reset(&materials);
     ag_film_destroy(film);
     studio_close(s);
+}
+
+/* Curves, which are put together where they are alike, stay apart where their names differ, moving ones too. */
+static void test_names_of_curves(void **state)
+{
+    (void)state;
+    static const char *const MOTIONS[2] = {"", "ActiveTransform EndTime Translate 1 0 0 "
+                                               "ActiveTransform All "};
+    for (int k = 0; k < 2; k++) {
+        char text[1024];
+        const char *hair = "\"point3 P\" [0 0 2  0 1 2  1 1 2  1 0 2]";
+        snprintf(text, sizeof text,
+                 "Camera \"perspective\" WorldBegin LightSource \"infinite\" %s\n"
+                 "Shape \"curve\" \"string name\" \"fox\" %s Shape \"curve\" \"string name\" \"fox\" %s\n"
+                 "Shape \"curve\" \"string name\" \"hare\" %s Shape \"curve\" %s Shape \"curve\" %s\n",
+                 MOTIONS[k], hair, hair, hair, hair, hair);
+        studio *s = studio_open(text, 1);
+        const scene *made = s->scene->s;
+        assert_int_equal(made->shape_count, 3);
+        assert_int_equal(made->instance_count, k ? 3 : 0);
+        assert_string_equal(scene_name(made, NAMED_SHAPE, 0), "fox");
+        assert_string_equal(scene_name(made, NAMED_SHAPE, 1), "hare");
+        assert_null(scene_name(made, NAMED_SHAPE, 2));
+        studio_close(s);
+    }
 }
 
 /* The file has Cryptomatte's header and its manifest. */
@@ -153,10 +180,8 @@ static void test_file(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_hashes),
-        cmocka_unit_test(test_ranks),
-        TEST_IN_FOLDER(test_scene),
-        TEST_IN_FOLDER(test_file),
+        cmocka_unit_test(test_hashes),        cmocka_unit_test(test_ranks), TEST_IN_FOLDER(test_scene),
+        TEST_IN_FOLDER(test_names_of_curves), TEST_IN_FOLDER(test_file),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -230,6 +230,7 @@ typedef struct pbrt_parser {
     size_t lamp_copy_count, lamp_copy_vertex_count;         /* that instances have made */
     name_table float_texture_names, spectrum_texture_names; /* to indices of the scene's */
     float alpha;                                            /* of the shape being read */
+    const char *shape_name;                                 /* of the shape that is read; NULL: none */
     uint32_t alpha_texture;                                 /* of the shape being read */
 } pbrt_parser;
 

@@ -6,6 +6,13 @@
 
 #include <string.h>
 
+/* Whether the last shape of the scene has this name, or as little one. */
+static bool is_last_named(const scene *s, const char *name)
+{
+    const char *before = s->shape_count > 0 ? scene_name(s, NAMED_SHAPE, s->shape_count - 1) : NULL;
+    return before && name ? strcmp(before, name) == 0 : before == name;
+}
+
 ag_status pbrt_add_shape(pbrt_parser *parser, const parameter_list *list, shape *s)
 {
     uint32_t index;
@@ -20,7 +27,7 @@ ag_status pbrt_add_shape(pbrt_parser *parser, const parameter_list *list, shape 
     if (shines && s->kind == SHAPE_CURVES)
         log_at_once(parser->log, AG_LOG_WARNING, list->where, "curve light",
                     "Shape \"curve\" cannot shine, nor can it in pbrt: its area light is left out");
-    if (s->kind == SHAPE_CURVES)
+    if (s->kind == SHAPE_CURVES && is_last_named(parser->scene, parser->shape_name))
         return scene_add_curves(parser->scene, parser->shapes_object_index, s);
     if (shines && parser->state.has_no_surface) {
         log_at(parser->log, AG_LOG_WARNING, list->where,
@@ -164,7 +171,7 @@ static ag_status add_made_mesh(pbrt_parser *parser, parameter_list *list)
                : AG_OK;
 }
 
-static ag_status read_shape(pbrt_parser *parser, parameter_list *list)
+static ag_status read_kind(pbrt_parser *parser, parameter_list *list)
 {
     static const char *const OLD[] = {"cone", "paraboloid", "hyperboloid", "heightfield", "heightfield2", "nurbs"};
     typedef ag_status reader(pbrt_parser *, parameter_list *);
@@ -197,6 +204,20 @@ static ag_status read_shape(pbrt_parser *parser, parameter_list *list)
     return pbrt_error(parser, list->where, strlen("Shape"), "unknown shape \"%s\"", list->name);
 }
 
+/* "name", which pbrt does not have: what Cryptomattes call the shape. */
+static ag_status read_shape(pbrt_parser *parser, parameter_list *list)
+{
+    const uint32_t first = parser->scene->shape_count;
+    parser->shape_name = NULL;
+    AG_TRY(parameter_get_string(list, parser->log, "name", &parser->shape_name));
+    if (parser->shape_name && !*parser->shape_name)
+        parser->shape_name = NULL;
+    ag_status status = read_kind(parser, list);
+    for (uint32_t i = first; status == AG_OK && i < parser->scene->shape_count; i++)
+        status = scene_set_name(parser->scene, NAMED_SHAPE, i, parser->shape_name);
+    return status;
+}
+
 static bool is_curve(const parameter_list *list) { return strcmp(list->name, "curve") == 0; }
 
 /* A curve's width is of its own space, where it is alike all round. */
@@ -209,7 +230,9 @@ static bool is_stretched_curve(const pbrt_parser *parser, const parameter_list *
 static bool joins_curves(const pbrt_parser *parser, const parameter_list *list)
 {
     const pbrt_state *state = &parser->state;
+    const parameter *name = parameter_list_find(list, "name");
     return is_curve(list) && parser->curves_object_index != SCENE_NO_OBJECT &&
+           is_last_named(parser->scene, name && name->strings ? name->strings[0] : NULL) &&
            parser->curves_object_around == parser->shapes_object_index &&
            memcmp(parser->curves_start.m, state->world_from_object.m, sizeof parser->curves_start.m) == 0 &&
            memcmp(parser->curves_end.m, state->world_from_object_end.m, sizeof parser->curves_end.m) == 0;
