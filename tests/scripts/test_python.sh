@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The Python module: its structs are the header's, public names have docstrings and type hints, README's lines run, errors
+# The Python module: its structs and functions are the header's, public names have docstrings and type hints, README's lines run, errors
 # are exceptions with the library's text, a callback's exception calls the work off, and the picture has the program's bits.
 set -euo pipefail
 # shellcheck source=tests/fixtures/shell_test.sh
@@ -34,6 +34,45 @@ END
 "$CC" -std=c17 -I "$root/renderer/include" -I "$root/threads/include" -fsyntax-only layout.c ||
     fail "the module's structs are not the header's"
 echo "ok: layout"
+
+# tests/fixtures/public_abi.txt is what the headers say (test_public_abi.sh).
+"$python" - "$root/tests/fixtures/public_abi.txt" <<'END' || fail "the module's functions are not the header's"
+import ctypes, re, sys, afterglow
+
+NAMED = {"void": None, "int": ctypes.c_int, "size_t": ctypes.c_size_t, "uint64_t": ctypes.c_uint64,
+         "ag_handle": ctypes.c_uint64, "float": ctypes.c_float, "double": ctypes.c_double, "_Bool": ctypes.c_bool,
+         "ag_sample_counts": afterglow._SampleCounts, "ag_commit_counts": afterglow._CommitCounts}
+
+def kind(text):
+    """Of a parameter or result in C: pointer, or the ctypes type."""
+    if "*" in text or "[" in text:
+        return "pointer"
+    name = text.replace("const ", "").split()[0]
+    return NAMED[name] if name in NAMED or not name.startswith("ag_") else ctypes.c_int  # an enum
+
+def own_kind(type):
+    is_pointer = type in (ctypes.c_void_p, ctypes.c_char_p) or (type and issubclass(type, ctypes._Pointer))
+    return "pointer" if is_pointer else type
+
+def differ(own, text):
+    result, arguments = re.fullmatch(r"(.*?)ag_\w+\((.*)\)", text).groups()
+    wanted = [] if arguments == "void" else [kind(each.strip()) for each in arguments.split(",")]
+    return [own_kind(each) for each in own.argtypes] != wanted or own_kind(own.restype) != kind(result)
+
+record = {}
+for line in open(sys.argv[1]).read().splitlines():
+    if line.startswith("function "):
+        text = line[len("function "):]
+        record[re.search(r"(ag_\w+)\(", text).group(1)] = text
+used = {name: own for name, own in vars(afterglow._library).items() if name.startswith("ag_")}
+wrong = [name for name, own in used.items() if name not in record or differ(own, record[name])]
+assert len(used) > 40 and not wrong, wrong
+some = afterglow._library.ag_rendering_continue
+assert differ(some, "ag_status ag_rendering_continue(ag_rendering *rendering, size_t samples)")
+assert differ(some, "ag_status ag_rendering_continue(ag_rendering *rendering)")
+assert differ(some, "void ag_rendering_continue(ag_rendering *rendering, int samples)")
+END
+echo "ok: functions"
 
 "$python" - <<'END' || fail "public names lack a docstring or a type hint"
 import inspect, sys, typing, afterglow
