@@ -102,7 +102,8 @@ static void render_sample(const tile_job *job, eye_worker *worker, int x, int y,
     out->most_indirect = settings->clamp_indirect > 0.0f ? settings->clamp_indirect : INFINITY;
     uint64_t cost_before = eye_worker_cost(worker);
     job->kind->sample(t, worker, &from, out);
-    out->rest_cost = (uint32_t)(eye_worker_cost(worker) - cost_before) - out->gather_cost - out->light_cost;
+    out->rest_cost =
+        (uint32_t)(eye_worker_cost(worker) - cost_before) - out->gather_cost - out->light_cost - out->caustic_cost;
     if (out->layers && t->layout->needs_first_hit)
         first_hit_project(t, &on_film, &out->layers->first);
 }

@@ -49,10 +49,11 @@ typedef struct sample_layers {
     first_hit first;
 } sample_layers;
 
-/* The number of inner samples that a camera sample is split into; >= 1. */
+/* The number of inner samples that a camera sample is split into: rays, lights >= 1. */
 typedef struct split_counts {
-    uint32_t rays;      /* gather rays */
-    uint32_t lights;    /* samples towards lamps where its ray meets a diffuse surface first */
+    uint32_t rays;         /* gather rays */
+    uint32_t lights;       /* samples towards lamps where its ray meets a diffuse surface first */
+    uint32_t caustic_bits; /* of 2^caustic_bits camera samples one asks the caustic map, by chance */
     uint32_t ray_shift; /* added, modulo 2^32, to the sample's number where its gather rays are numbered, so that those
                            of a pixel follow each other whatever the numbers were before; see sampler_shifted */
 } split_counts;
@@ -63,8 +64,11 @@ typedef struct eye_sample {
     int sign;                         /* of the pixel filter there */
     float gather_variance;            /* of the mean of the three colours, by the choice of gather rays: an estimate */
     float light_variance; /* of that mean by the choice of light samples, where the ray met a surface first */
-    uint32_t gather_cost, light_cost, rest_cost; /* of those, and of all else: see eye_worker_cost */
-    sample_layers *layers;                       /* NULL: radiance alone is asked for */
+    float caustic_square; /* of the same mean of the caustics that were asked for, times the chance of asking by
+                             caustic_bits: the sum of the squares */
+    uint32_t gather_cost, light_cost, caustic_cost; /* of those: see eye_worker_cost */
+    uint32_t rest_cost;                             /* of all else */
+    sample_layers *layers;                          /* NULL: radiance alone is asked for */
 } eye_sample;
 
 /* The factor that bounds light to a largest component. */

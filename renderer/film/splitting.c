@@ -15,17 +15,18 @@ enum { ADAPTIVE_SAMPLES = 64 };
  * are enough find that out, and behind windows, where light comes from is what is known least. */
 enum { GATHER_RAYS_PER_LIGHT_SAMPLE = 8, FIRST_LIGHTS = 16 };
 enum { RAYS_MAX = 64, LIGHTS_MAX = 16 };
+/* Caustics that a block's first samples have missed are four times as bright as they would be, at most. */
+enum { CAUSTIC_BITS_MAX = 2 };
 
 /* Rays and light samples of the first camera samples, at least: from one the variance cannot be told, and the pilot may
  * have looked past small things. */
 enum { FIRST_RAYS_MIN = 4, FIRST_LIGHTS_MIN = 4 };
 
-/* With a fixed number of camera samples noisy blocks cannot have more of these, and are better helped by inner ones
- * than the cost of their own noise says: by this factor, as measured in five rooms. */
-static const double FIXED_FACTOR = 2.0;
-/* With a fixed number of camera samples the first rays bound the time, and each block has at least one in so many of
- * them: samples along edges vary much, but are spread so well that little of that is left in the mean. */
-enum { FIXED_SHARE = 2 };
+/* With a fixed number N of camera samples each block has so many gather rays for each, or half of the most: samples
+ * along edges vary much, but are spread so well that little of that is left in the mean. For the same reason inner
+ * samples are worth the fourth root of N times what the variance of single camera samples says: that of N stratified
+ * ones falls by N^1.5 along an edge (Mitchell, "Consequences of Stratified Sampling in Graphics", 1996). */
+enum { FIXED_LEAST = 8 };
 /* With a fixed number of camera samples no block needs a standard error (noise.h) below this, which nobody sees. */
 static const double FIXED_CLEAN = 0.003;
 
@@ -68,6 +69,7 @@ split_counts splitting_most(const ag_render_settings *settings, bool splits_samp
     if (!splitting_is_open(settings, splits_samples))
         return most;
     most.lights = LIGHTS_MAX;
+    most.caustic_bits = CAUSTIC_BITS_MAX;
     if (settings->noise_level > 0.0f && most.rays < RAYS_MAX) /* else the first rays bound the time */
         most.rays = RAYS_MAX;
     return most;
@@ -77,12 +79,16 @@ void split_trial_add(split_trial *trial, const eye_sample *sample)
 {
     rgb radiance = sample->radiance;
     float value = rgb_mean(radiance), rays = (float)trial->counts.rays, lights = (float)trial->counts.lights;
+    float asked = (float)(1u << trial->counts.caustic_bits);
     trial->value += value;
     trial->square += value * value;
     trial->by_parts += sample->gather_variance;
     trial->by_ray += sample->gather_variance * rays;
     trial->cost_of_ray += (float)sample->gather_cost / rays;
     trial->cost_of_light += (float)sample->light_cost / lights;
+    trial->by_parts += sample->caustic_square * (asked - 1.0f);
+    trial->caustic += sample->caustic_square;
+    trial->cost_of_caustic += (float)sample->caustic_cost * asked;
     trial->cost_of_rest += (float)sample->rest_cost;
     if (trial->counts.lights < 2)
         return;
@@ -95,8 +101,8 @@ void split_trial_add(split_trial *trial, const eye_sample *sample)
 
 /* Over a block: how many pixels, their variances of what is shown of one sample, and costs. */
 typedef struct block_sums {
-    double pixels, all, by_parts, by_ray, by_light;
-    double cost_of_ray, cost_of_light, cost_of_rest;
+    double pixels, all, by_parts, by_ray, by_light, caustic;
+    double cost_of_ray, cost_of_light, cost_of_caustic, cost_of_rest;
 } block_sums;
 
 static void add_pixel(const split_trial *trial, double count, double scale, block_sums *sums)
@@ -109,15 +115,17 @@ static void add_pixel(const split_trial *trial, double count, double scale, bloc
     sums->by_parts += weight * (double)trial->by_parts / count;
     sums->by_ray += weight * (double)trial->by_ray / count;
     sums->by_light += lights_known > 0.0 ? weight * (double)trial->by_light / lights_known : 0.0;
+    sums->caustic += weight * (double)trial->caustic / count;
     sums->cost_of_ray += (double)trial->cost_of_ray;
     sums->cost_of_light += (double)trial->cost_of_light;
+    sums->cost_of_caustic += (double)trial->cost_of_caustic;
     sums->cost_of_rest += (double)trial->cost_of_rest;
 }
 
 /* The bounds of a block's choice. */
 typedef struct choice {
     double scale;  /* from radiance to what is shown */
-    double factor; /* of the numbers that are best for a block alone */
+    double factor; /* of the numbers that are best for single camera samples */
     double clean;  /* the variance of a sample that does no harm; 0: none */
     split_counts least, most;
 } choice;
@@ -137,9 +145,24 @@ static uint32_t best_count(const block_sums *sums, double by_one, double cost_of
     return count < most ? count : most;
 }
 
+/* The best share of samples that ask for caustics, as splitting.h has it, as a power of two that is nearest by ratio.
+ */
+static uint32_t best_caustic_bits(const block_sums *sums, const choice *c)
+{
+    double rest = fmax(sums->all - sums->by_parts - sums->caustic, LEAST_REST * sums->all), wanted = 1.0;
+    rest = fmax(rest, c->clean * sums->pixels);
+    if (rest > 0.0 && sums->cost_of_caustic > 0.0)
+        wanted = c->factor * sqrt(sums->caustic / rest * sums->cost_of_rest / sums->cost_of_caustic);
+    uint32_t bits = 0;
+    while (bits < c->most.caustic_bits && wanted * (double)(2u << bits) < 1.4142135623730951)
+        bits++;
+    return bits;
+}
+
 static split_counts best_counts(const block_sums *sums, const choice *c)
 {
     return (split_counts){
+        .caustic_bits = best_caustic_bits(sums, c),
         .rays = best_count(sums, sums->by_ray, sums->cost_of_ray, c, c->least.rays, c->most.rays),
         .lights = best_count(sums, sums->by_light, sums->cost_of_light, c, c->least.lights, c->most.lights)};
 }
@@ -153,9 +176,9 @@ static choice make_choice(const ag_render_settings *settings)
                 splitting_most(settings, true)};
     if (settings->noise_level > 0.0f)
         return c;
-    c.factor = FIXED_FACTOR;
+    c.factor = sqrt(sqrt((double)settings->samples_per_pixel));
+    c.least.rays = (c.most.rays + 1) / 2 < FIXED_LEAST ? (c.most.rays + 1) / 2 : FIXED_LEAST;
     c.clean = FIXED_CLEAN * FIXED_CLEAN * settings->samples_per_pixel;
-    c.least.rays = (c.most.rays + FIXED_SHARE - 1) / FIXED_SHARE;
     return c;
 }
 
@@ -225,6 +248,7 @@ ag_status splitting_begin(struct ag_film *film, const struct ag_film *pilot, con
     const film_area *all = &film->area;
     const int right = all->x0 + all->width, bottom = all->y0 + all->height;
     choice c = make_choice(settings);
+    c.least.rays = c.least.rays > FIRST_RAYS_MIN ? c.least.rays : FIRST_RAYS_MIN;
     c.least.lights = FIRST_LIGHTS_MIN;
     if (!film->first_splits)
         film->first_splits = malloc((film_block_number(film, right - 1, bottom - 1) + 1) * sizeof *film->first_splits);

@@ -1,11 +1,14 @@
-/* splitting.h: into how many gather rays and light samples a camera sample is split, where no option says it: in each
- * block of pixels so many that the rays which the block costs bring the least noise.
+/* splitting.h: into how many gather rays and light samples a camera sample is split, and how many of them ask for
+ * caustics, where no option says it: in each block of pixels so many that the rays which the block costs bring the
+ * least noise.
  * Rests on: Arvo, Kirk, "Particle Transport and Image Synthesis", 1990 (splitting); Neyman, "On the Two Different
  * Aspects of the Representative Method", 1934 (samples by variance and cost). With the variances V between camera
  * samples, G by one gather ray, L by one light sample, and what each of them costs, v, g, l, N camera samples of n rays
  * and m light samples have the variance (V + G / n + L / m) / N for the cost N (v + n g + m l); their product is least
- * at n = sqrt(G / V * v / g), m = sqrt(L / V * v / l). Flow: film -> [here] -> the next pass. Threads: a pixel belongs
- * to one worker at a time; decided when no tile is rendered.
+ * at n = sqrt(G / V * v / g), m = sqrt(L / V * v / l). Where caustics of the mean square C, which cost c, are asked for
+ * by chance, with the probability p (roulette), V - C + C / p and v + p c stand for V and v: p = sqrt(C / (V - C) * v /
+ * c). Flow: film -> [here] -> the next pass. Threads: a pixel belongs to one worker at a time; decided when no tile is
+ * rendered.
  *
  * It is decided for blocks, as in adaptive.h: for the first samples of a fixed number by a small picture of the whole
  * frame, later, when there are so many samples, from the block's own; costs are numbers of rays and no times. How a
@@ -24,9 +27,10 @@ struct ag_film;
 /* A pixel's sums over its samples, and how the next ones are split. Variances are of the mean of the three colours. */
 typedef struct split_trial {
     float value, square;    /* the mean of the three colours, and its square */
-    float by_parts;         /* the variance by the choice of gather rays and light samples */
+    float by_parts;         /* the variance by the choice of gather rays and light samples, and by roulette */
     float by_ray, by_light; /* what it would be with one of them */
-    float cost_of_ray, cost_of_light, cost_of_rest;
+    float caustic;          /* the square of caustics: the variance by asking for them half as often */
+    float cost_of_ray, cost_of_light, cost_of_caustic, cost_of_rest;
     uint32_t lights_known; /* samples that by_light sums over: those of two light samples or more */
     split_counts counts;
 } split_trial;

@@ -14,7 +14,8 @@ static rgb local_light(const transport *t, eye_worker *worker, const vertex *v, 
 {
     float u_pick = rng_float(random), u_caustic = rng_float(random);
     rgb direct = direct_light_from_lamp(t, worker, v, BSDF_GATHERED, u_pick, rng_vec2(random), 1, 0);
-    return rgb_add(direct, transport_some_caustics(t, worker, v, share_seen, u_caustic));
+    return rgb_add(direct,
+                   transport_some_caustics(t, worker, v, transport_caustic_probability(t, share_seen), u_caustic));
 }
 
 /* Ends the ray at a diffuse vertex with the irradiance on one side of it, which is picked by the lobes' shares. */

@@ -67,7 +67,7 @@ static bool bound_sample(const struct ag_film *film, eye_sample *sample)
         is_finite = is_finite && rgb_is_finite(sample->layers->parts[i]);
     if (!is_finite) {
         sample->radiance = rgb_gray(0.0f);
-        sample->gather_variance = sample->light_variance = 0.0f;
+        sample->gather_variance = sample->light_variance = sample->caustic_square = 0.0f;
         if (sample->layers) {
             const first_hit first = sample->layers->first;
             *sample->layers = (sample_layers){.first = first};

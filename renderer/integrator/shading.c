@@ -97,13 +97,32 @@ static direct_light direct_radiance(const transport *t, eye_worker *worker, cons
     return direct;
 }
 
-/* Finds the light that a diffuse vertex sends on, and notes in the sample what gather rays and light samples cost, and
- * how noisy the latter are. Where the vertex contributes little, all of it is the photon map's estimate there. */
+/* Caustics behind the first surface are asked for by what of them reaches the eye; all of them only as often as it pays
+ * in the block. */
+static rgb caustic_radiance(const transport *t, eye_worker *worker, const vertex *v, const camera_sample *from,
+                            const eye_path *path, eye_sample *sample)
+{
+    bool is_first = path->scatterings == 0, is_bounded = t->settings->clamp_indirect > 0.0f;
+    rgb seen = rgb_scale(path->throughput, path->share);
+    float of_block = is_bounded ? 1.0f : 1.0f / (float)(1u << from->split.caustic_bits);
+    float of_path = is_first ? 1.0f : transport_caustic_probability(t, rgb_max(seen));
+    uint64_t before = eye_worker_cost(worker);
+    rgb caustic = transport_some_caustics(t, worker, v, of_block * of_path,
+                                          sampler_2d(&path->where, SAMPLE_ROULETTE, eye_path_key(path)).y);
+    float brought = rgb_mean(rgb_mul(seen, caustic));
+    sample->caustic_square += of_block * brought * brought;
+    sample->caustic_cost += (uint32_t)(eye_worker_cost(worker) - before);
+    return caustic;
+}
+
+/* Finds the light that a diffuse vertex sends on, and notes in the sample what gather rays, light samples and caustics
+ * cost, and how noisy the latter two are. Where the vertex contributes little, all of it is the photon map's estimate
+ * there. */
 static diffuse_light diffuse_radiance(const transport *t, eye_worker *worker, const vertex *v,
                                       const camera_sample *from, const eye_path *path, eye_sample *sample,
                                       rgb *by_group)
 {
-    int scatterings_left = t->settings->max_depth - path->scatterings, key = eye_path_key(path);
+    int scatterings_left = t->settings->max_depth - path->scatterings;
     bool is_whole = t->settings->only == AG_ONLY_ALL;
     rgb throughput = path->throughput;
     diffuse_light sum = {rgb_gray(0.0f), rgb_gray(0.0f), rgb_gray(0.0f), rgb_gray(0.0f)};
@@ -126,11 +145,7 @@ static diffuse_light diffuse_radiance(const transport *t, eye_worker *worker, co
         sum.direct = direct.radiance;
         sum.sky = direct.from_sky;
     }
-    if (path->scatterings == 0)
-        sum.caustic = transport_caustics(t, worker, v);
-    else
-        sum.caustic = transport_some_caustics(t, worker, v, path->share * rgb_max(throughput),
-                                              sampler_2d(&path->where, SAMPLE_ROULETTE, key).y);
+    sum.caustic = caustic_radiance(t, worker, v, from, path, sample);
     if (scatterings_left >= 2)
         gather_light(t, worker, v, from, path, sample);
     return sum;

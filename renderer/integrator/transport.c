@@ -85,6 +85,7 @@ rgb transport_caustics(const transport *t, eye_worker *worker, const vertex *v)
         arena_alloc(worker->scratch, photon_map_scratch_count(t->caustic) * sizeof(photon_neighbor));
     rgb reflected = bsdf_gathered_reflection(&v->scattering), transmitted = bsdf_gathered_transmission(&v->scattering);
     rgb irradiance;
+    worker->estimates_caustic += rgb_is_black(transmitted) ? 1 : 2;
     irradiance_estimate_find(t->caustic, at.position, at.facing_normal, neighbors, &worker->rays_estimate, &irradiance);
     rgb sum = rgb_mul(reflected, irradiance);
     if (!rgb_is_black(transmitted)) {
@@ -99,10 +100,14 @@ rgb transport_caustics(const transport *t, eye_worker *worker, const vertex *v)
 /* Caustics are looked up where this share of them, or more, reaches the eye; below that by chance, in proportion. */
 static const float CAUSTIC_SHARE_MAX = 0.25f;
 
-rgb transport_some_caustics(const transport *t, eye_worker *worker, const vertex *v, float share_seen, float u)
+float transport_caustic_probability(const transport *t, float share_seen)
 {
     if (t->settings->clamp_indirect > 0.0f)
-        return transport_caustics(t, worker, v); /* a bound would cut what chance has made brighter */
-    float probability = fminf(share_seen / CAUSTIC_SHARE_MAX, 1.0f);
+        return 1.0f; /* a bound would cut what chance has made brighter */
+    return fminf(share_seen / CAUSTIC_SHARE_MAX, 1.0f);
+}
+
+rgb transport_some_caustics(const transport *t, eye_worker *worker, const vertex *v, float probability, float u)
+{
     return u < probability ? rgb_scale(transport_caustics(t, worker, v), 1.0f / probability) : rgb_gray(0.0f);
 }

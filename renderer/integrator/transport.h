@@ -38,6 +38,7 @@ typedef struct eye_worker {
     _Alignas(64) unsigned index; /* the worker's */
     uint64_t rays_camera, rays_shadow, rays_gather, rays_path;
     uint64_t rays_estimate;                /* of photon estimates and lookups at the point itself */
+    uint64_t estimates_caustic;            /* estimates of the caustic map's light */
     uint64_t camera_rays_met;              /* those that met a surface */
     uint64_t samples_not_finite, rays_cut; /* the latter: by TRANSMITTANCE_CROSSINGS_MAX */
     arena *scratch;                        /* for neighbours; what render.c has tried out beforehand always fits */
@@ -49,11 +50,12 @@ typedef struct eye_worker {
 /* The cost of a worker's rays so far in quarters of a gather ray's time, as measured in five rooms. Detours are left
  * out: they do not belong to the sample under way. A camera ray's cost includes the sample's whole way into the film, a
  * path ray's the shading of the vertex that it meets. */
-enum { EYE_COST_OF_RAY = 4, EYE_COST_OF_CAMERA_RAY = 24, EYE_COST_OF_PATH_RAY = 8 };
+enum { EYE_COST_OF_RAY = 4, EYE_COST_OF_CAMERA_RAY = 24, EYE_COST_OF_PATH_RAY = 8, EYE_COST_OF_CAUSTIC = 32 };
 static inline uint64_t eye_worker_cost(const eye_worker *w)
 {
     return EYE_COST_OF_CAMERA_RAY * w->rays_camera + EYE_COST_OF_PATH_RAY * w->rays_path +
-           EYE_COST_OF_RAY * (w->rays_shadow + w->rays_gather) + w->rays_estimate - w->cost_apart;
+           EYE_COST_OF_RAY * (w->rays_shadow + w->rays_gather) + w->rays_estimate +
+           EYE_COST_OF_CAUSTIC * w->estimates_caustic - w->cost_apart;
 }
 
 /* The numbers of samples that direct light takes at a diffuse vertex. */
@@ -114,8 +116,11 @@ static inline bool transport_survives(rgb *in_out_throughput, float u)
 /* The caustic map's light at a diffuse vertex: reflected radiance. */
 rgb transport_caustics(const transport *t, eye_worker *worker, const vertex *v);
 
-/* An estimate of transport_caustics, equal on average, that asks the map only as often as it matters: share_seen is how
- * much of it reaches the eye, u a random number in [0, 1). */
-rgb transport_some_caustics(const transport *t, eye_worker *worker, const vertex *v, float share_seen, float u);
+/* How often caustics are to be asked for where this share of them reaches the eye, (0, 1]. */
+float transport_caustic_probability(const transport *t, float share_seen);
+
+/* An estimate of transport_caustics, equal on average, that asks the map with this probability; u is a random number in
+ * [0, 1). */
+rgb transport_some_caustics(const transport *t, eye_worker *worker, const vertex *v, float probability, float u);
 
 #endif

@@ -32,9 +32,10 @@ static ag_render_settings settings_of(float noise_level, int samples)
     return s;
 }
 
-/* Four samples for each pixel, of the variance that is asked for: of their own, by one gather ray, by one light sample.
- * A ray costs 4, as does a light sample, and the rest of a camera sample 40. */
-static void add_block(ag_film *film, int x0, double own, double by_ray, double by_light)
+/* Four samples for each pixel, of the variance that is asked for: of their own, by one gather ray, by one light sample;
+ * caustic: the mean square of their caustics. A ray costs 4, as does a light sample, a caustic and the rest of a camera
+ * sample 40 each. */
+static void add_block(ag_film *film, int x0, double own, double by_ray, double by_light, double caustic)
 {
     for (int y = 0; y < HEIGHT; y++)
         for (int x = x0; x < x0 + FILM_BLOCK; x++) {
@@ -44,6 +45,8 @@ static void add_block(ag_film *film, int x0, double own, double by_ray, double b
             eye_sample s = {.sign = 1,
                             .gather_variance = (float)by_ray / rays,
                             .light_variance = (float)by_light / lights,
+                            .caustic_square = (float)caustic,
+                            .caustic_cost = 40,
                             .gather_cost = 4 * counts.rays,
                             .light_cost = 4 * counts.lights,
                             .rest_cost = 40};
@@ -68,12 +71,14 @@ static void expect_counts(const ag_film *film, int x, uint32_t rays, uint32_t li
 static void test_best_numbers(void **state)
 {
     (void)state;
-    /* sqrt(0.04 / 0.04 * 40 / 4) = 3.2 and sqrt(0.02 / 0.04 * 40 / 4) = 2.2 for a block alone; twice that where the
-     * number of samples is fixed */
+    /* sqrt(0.04 / 0.04 * 40 / 4) = 3.2 and sqrt(0.02 / 0.04 * 40 / 4) = 2.2; twice that, the fourth root of 16, where
+     * the number of samples is fixed; and sqrt(0.008 / 0.032 * 40 / 40) = 1 / 2 for caustics, which is nearest to 1
+     * then */
     static const struct {
         float noise_level;
         uint32_t rays, lights, no_rays; /* the best; gather rays where they bring no noise */
-    } cases[] = {{0.0f, 8, 4, 8}, {0.01f, 4, 2, 1}};
+        uint32_t caustic_bits;
+    } cases[] = {{0.0f, 8, 4, 8, 0}, {0.01f, 4, 2, 1, 1}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         ag_render_settings settings = settings_of(cases[i].noise_level, 16);
         ag_film *film = create_film(&settings);
@@ -82,12 +87,14 @@ static void test_best_numbers(void **state)
                 film->wanted[k] = 16;
         assert_int_equal(splitting_decide(film, &settings, 16), 4);
         expect_counts(film, 3, 16, 16);
-        add_block(film, 0, 0.04, 0.04, 0.02);
-        add_block(film, FILM_BLOCK, 0.04, 0.0, 0.0);
+        add_block(film, 0, 0.04, 0.04, 0.02, 0.008);
+        add_block(film, FILM_BLOCK, 0.04, 0.0, 0.0, 0.0);
         for (int times = 0; times < 2; times++) { /* again changes nothing */
             assert_int_equal(splitting_decide(film, &settings, 16), 16);
             expect_counts(film, 3, cases[i].rays, cases[i].lights);
             expect_counts(film, 11, cases[i].no_rays, 1);
+            assert_int_equal(film->splits[film_pixel_at(film, 3, 3)].counts.caustic_bits, cases[i].caustic_bits);
+            assert_int_equal(film->splits[film_pixel_at(film, 11, 3)].counts.caustic_bits, 2); /* at most */
         }
         assert_int_equal(splitting_decide(film, &settings, 4), 4); /* nothing to do */
         ag_film_destroy(film);
@@ -100,8 +107,8 @@ static void test_first_numbers(void **state)
     (void)state;
     ag_render_settings settings = settings_of(0.0f, 2), pilots = settings_of(0.0f, 4);
     ag_film *pilot = create_film(&pilots), *film;
-    add_block(pilot, 0, 0.04, 0.04, 0.08);
-    add_block(pilot, FILM_BLOCK, 0.04, 0.0, 0.0);
+    add_block(pilot, 0, 0.04, 0.64, 0.16, 0.008);
+    add_block(pilot, FILM_BLOCK, 0.04, 0.0, 0.0, 0.0);
     settings.width = 5 * WIDTH; /* five blocks of it lie in one of the pilot */
     settings.crop_window[0] = 0.3;
     film = create_film(&settings);
@@ -109,9 +116,10 @@ static void test_first_numbers(void **state)
     for (int times = 0; times < 2; times++) {
         split_counts lit = film->splits[film_pixel_at(film, 31, 3)].counts,
                      dark = film->splits[film_pixel_at(film, 64, 3)].counts;
-        /* half of 128 rays, and 2 sqrt(0.08 / 0.04 * 40 / 4) = 8.9; in the dark the least that tells a variance */
-        assert_true(lit.rays == 64 && lit.lights == 8 && lit.ray_shift == 0);
-        assert_true(dark.rays == 64 && dark.lights == 4);
+        /* the fourth root of 2 times sqrt(0.64 / 0.04 * 40 / 4) = 12.6 and sqrt(0.16 / 0.04 * 40 / 4) = 6.3; in the
+         * dark the least of both */
+        assert_true(lit.rays == 16 && lit.lights == 8 && lit.ray_shift == 0);
+        assert_true(dark.rays == 8 && dark.lights == 4);
         film_clear(film, &settings);
     }
     ag_film_destroy(film);
@@ -293,6 +301,37 @@ static void test_crops(void **state)
     studio_close(s);
 }
 
+/* Caustics that are asked for by chance have the mean of those that are asked for always, on the same photons. */
+static void test_caustics_by_chance(void **state)
+{
+    (void)state;
+    enum { SEEDS = 16 };
+    studio *s = open_room(1, 0.0f);
+    s->settings.photon_seed = 7;
+    double sum = 0.0, squares = 0.0, always = 0.0;
+    uint32_t rare = 0;
+    for (int i = 0; i < SEEDS; i++) {
+        double mean[2];
+        s->settings.seed = (uint64_t)i + 1;
+        for (int k = 0; k < 2; k++) {
+            s->settings.gather_samples = k == 0 ? 0 : 4;
+            ag_film *film = studio_render(s);
+            for (size_t pixel = 0; k == 0 && pixel < film_area_count(film); pixel++)
+                rare += film->splits[pixel].counts.caustic_bits > 0;
+            mean[k] = film_mean(film, "caustic.R");
+            ag_film_destroy(film);
+        }
+        sum += mean[0] - mean[1];
+        squares += (mean[0] - mean[1]) * (mean[0] - mean[1]);
+        always += mean[1] / SEEDS;
+    }
+    double mean = sum / SEEDS, error = sqrt((squares / SEEDS - mean * mean) / (SEEDS - 1));
+    print_message("caustics %.6f, by chance %+.6f +- %.6f more; in %u pixels\n", always, mean, error, rare / SEEDS);
+    assert_true(rare > 0 && always > 0.0 && error < 0.02 * always);
+    expect_within("caustics by chance", mean, 0.0, 4.0 * error);
+    studio_close(s);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -303,6 +342,7 @@ int main(void)
         cmocka_unit_test(test_expectation),
         TEST_IN_FOLDER(test_same_bits),
         TEST_IN_FOLDER(test_crops),
+        TEST_IN_FOLDER(test_caustics_by_chance),
         TEST_IN_FOLDER(test_checkpoint_of_other),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -117,10 +117,10 @@ typedef struct ag_render_settings {
                                    warnings refer to the picture as shown; default 0 */
     int gather_samples;         /* gather rays of each camera sample that meets a diffuse surface first, [1, 65536];
                                    hits behind glossy surfaces share about as many. 0, the default: each block of 8
-                                   by 8 pixels chooses the numbers of gather rays and light samples by the noise of
-                                   its samples; the first samples have at least 4 gather rays, and so many that
-                                   samples times gather rays are about AG_DEFAULT_GATHER_RAYS_PER_PIXEL (with a
-                                   noise level: 64 samples at most) */
+                                   by 8 pixels chooses the numbers of gather rays and light samples, and how often
+                                   caustics are asked for, by the noise of its samples and what they cost; samples
+                                   times gather rays are AG_DEFAULT_GATHER_RAYS_PER_PIXEL at most, or 4 gather rays a
+                                   sample (with a noise level: 64) */
     /* Path of a file that keeps the photon map from one picture to the next, with the irradiances computed so far;
      * NULL, the default: none. Where the file is missing, photons are traced and it is written. Processes on one
      * machine that use the file at the same time fill it together. The picture is the same with and without it. The
