@@ -50,6 +50,18 @@ static photon_map map_of(const photon_file_map *m, photon_tree tree, photon_tree
     return map;
 }
 
+/* A search in a map that was cut short or overwritten meanwhile goes by whatever its nodes say now, down to leaves that
+ * are not there. Trees are no deeper than their leaves need, so that twice the file is room for all of them. */
+static size_t reserved_bytes(const photon_file *file) { return 2 * file->size_bytes + 2 * PHOTON_FILE_PAGE; }
+
+/* Reserves the room, which reads as zeros; NULL: there is none. */
+static void *reserve(const photon_file *file)
+{
+    void *memory =
+        mmap(NULL, reserved_bytes(file), PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+    return memory == MAP_FAILED ? NULL : memory;
+}
+
 /* Maps it, and takes an entry among its owners. message: where not, why. */
 static bool share(int descriptor, photon_file *file, char *message, size_t message_size)
 {
@@ -57,15 +69,18 @@ static bool share(int descriptor, photon_file *file, char *message, size_t messa
         snprintf(message, message_size, "it is on a network's file system");
         return false;
     }
-    void *memory = mmap(NULL, file->size_bytes, PROT_READ | PROT_WRITE, MAP_SHARED, descriptor, 0);
-    if (memory == MAP_FAILED) {
+    void *memory = reserve(file);
+    if (!memory ||
+        mmap(memory, file->size_bytes, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_FIXED, descriptor, 0) == MAP_FAILED) {
         snprintf(message, message_size, "it cannot be mapped: %s", strerror(errno));
+        if (memory)
+            munmap(memory, reserved_bytes(file));
         return false;
     }
     claim_owner *table = (claim_owner *)(void *)((char *)memory + PHOTON_FILE_OWNERS_AT);
     if (!claim_owners_join(descriptor, table, &file->owners)) {
         snprintf(message, message_size, "too many processes use it, or its file system has no locks");
-        munmap(memory, file->size_bytes);
+        munmap(memory, reserved_bytes(file));
         return false;
     }
     file->guard = map_guard_add(memory, file->size_bytes);
@@ -80,7 +95,7 @@ static bool share(int descriptor, photon_file *file, char *message, size_t messa
 static photon_file_result copy(const run_context *run, int descriptor, photon_file *file, char *message,
                                size_t message_size)
 {
-    char *memory = aligned_alloc(PHOTON_FILE_PAGE, file->size_bytes);
+    char *memory = reserve(file);
     if (!memory) {
         snprintf(message, message_size, "out of memory");
         return PHOTON_FILE_FAILED;
@@ -93,7 +108,7 @@ static photon_file_result copy(const run_context *run, int descriptor, photon_fi
             continue;
         if (got <= 0 || is_cancelled) {
             snprintf(message, message_size, "%s", got < 0 ? strerror(errno) : "it is cut short");
-            free(memory);
+            munmap(memory, reserved_bytes(file));
             return is_cancelled ? PHOTON_FILE_CANCELLED : got < 0 ? PHOTON_FILE_FAILED : PHOTON_FILE_REFUSED;
         }
         at += (uint64_t)got;
@@ -268,11 +283,11 @@ void photon_file_close(photon_file *file)
 {
     if (file->is_shared) {
         map_guard_remove(file->guard);
-        munmap(file->memory, file->size_bytes);
+        munmap(file->memory, reserved_bytes(file));
         claim_owners_reset(&file->owners);
         close(file->descriptor); /* frees our entry among the owners */
-    } else {
-        free(file->memory);
+    } else if (file->memory) {
+        munmap(file->memory, reserved_bytes(file));
     }
     *file = (photon_file){.descriptor = -1, .guard = -1};
 }

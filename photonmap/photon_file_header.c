@@ -166,7 +166,8 @@ bool photon_file_header_is_valid(const photon_file_header *h, uint64_t got_bytes
     memcpy(trees, h->trees, sizeof trees);
     for (int i = 0; i < PHOTON_FILE_TREE_COUNT; i++)
         if (trees[i].count == PHOTON_NONE || trees[i].depth > 28 ||
-            photon_block_count(trees[i].count) > (uint64_t)1 << trees[i].depth)
+            photon_block_count(trees[i].count) > (uint64_t)1 << trees[i].depth ||
+            (trees[i].depth > 0 && photon_block_count(trees[i].count) <= (uint64_t)1 << (trees[i].depth - 1)))
             snprintf(message, message_size, "it is damaged: its counts cannot be");
     uint64_t checks_at;
     if (!message[0] && (photon_file_lay_out(trees, &checks_at) != h->file_bytes || checks_at != h->checks_at ||

@@ -6,6 +6,7 @@
 
 #include <errno.h>
 #include <signal.h>
+#include <sys/mman.h>
 #include <sys/wait.h>
 
 static void flip(const char *path, off_t at)
@@ -56,6 +57,34 @@ static void what_is_damaged_is_refused(void **state)
         assert_int_equal(truncate(path, LENGTHS[i]), 0);
         expect_refused(path, &key, LENGTHS[i] == 0 ? "empty" : "cut short");
     }
+    test_run_reset(&r);
+}
+
+/* A map that was cut short reads as zeros, whose nodes lead to leaves that are not there. Memory that may not be
+ * touched lies right behind where the file is mapped. */
+static void searches_stay_in_a_map_that_is_cut_short(void **state)
+{
+    (void)state;
+    test_run r;
+    test_run_init(&r, 1);
+    const char *path = write_map(&r);
+    const size_t forbidden_bytes = (size_t)16 << 20;
+    void *forbidden = mmap(NULL, forbidden_bytes, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    assert_true(forbidden != MAP_FAILED);
+    opened o;
+    open_map(&o, path);
+    uint32_t leaves = 1u << o.map.tree.depth;
+    assert_true(leaves > photon_block_count(o.map.tree.count));
+    assert_int_equal(truncate(path, 0), 0);
+    for (int i = 0; i < 64; i++) {
+        vec3 at = {(float)(i & 3) - 1.5f, (float)(i >> 2 & 3) - 1.5f, (float)(i >> 4) - 1.5f};
+        float distance_squared;
+        assert_true(photon_tree_leaf(&o.map.tree, at) < leaves);
+        photon_tree_nearest(&o.map.tree, at, (vec3){0.0f, 0.0f, 1.0f}, 0.0f, 10.0f, &distance_squared);
+    }
+    assert_false(photon_file_is_intact(&o.file));
+    close_map(&o);
+    munmap(forbidden, forbidden_bytes);
     test_run_reset(&r);
 }
 
@@ -173,6 +202,8 @@ static void check_bytes_tell_bits(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        /* the first: before each test cmocka puts its own handlers in the place of those that opening a map installs */
+        TEST_IN_FOLDER(searches_stay_in_a_map_that_is_cut_short),
         TEST_IN_FOLDER(what_is_damaged_is_refused),
         TEST_IN_FOLDER(slots_may_hold_anything),
         TEST_IN_FOLDER(flipped_bits_change_no_irradiance),
