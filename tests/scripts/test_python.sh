@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# The Python module: its structs and functions are the header's, public names have docstrings and type hints, README's lines run, errors
-# are exceptions with the library's text, a callback's exception calls the work off, and the picture has the program's bits.
+# The Python module: its structs and functions are the header's, public names have docstrings and type hints, README's lines
+# run, errors are exceptions with the library's text, a callback's exception calls the work off, and the picture has the program's bits.
 set -euo pipefail
 # shellcheck source=tests/fixtures/shell_test.sh
 source "$(dirname "${BASH_SOURCE[0]}")/../fixtures/shell_test.sh"
@@ -384,3 +384,33 @@ with afterglow.Context(progress=interrupt) as context, context.load("scene.pbrt"
     assert numpy.array_equal(scene.render(**picture), pixels)
 END
 echo "ok: scenes, errors, cancellation"
+
+"$python" - <<'END' || fail "what is called while the context is at work"
+import afterglow, numpy
+
+def refused(kind, text, function, *arguments):
+    try:
+        function(*arguments)
+    except kind as error:
+        assert text in str(error), f"'{text}' is not in: {error}"
+        return
+    raise AssertionError(f"no {kind.__name__}: {text}")
+
+with afterglow.Context(threads=2) as context, context.scene(editable=True) as scene:
+    scene.camera("perspective")
+    lamp = scene.light("point")
+    scene.shape("trianglemesh", {"point3 P": [[-1, -1, 2], [1, -1, 2], [0, 1, 2]], "integer indices": [0, 1, 2]})
+    refused(ValueError, "a NUL", scene.material, "a\0b", "diffuse")
+    with scene.rendering(size="64x64", spp=1 << 14, photons=100, caustic_photons=10, noise=0) as rendering:
+        # what a callback calls would work with the context a second time, or take away what is at work
+        for call in (lambda: rendering.advance(3), rendering.close, rendering.denoise, scene.close, context.close,
+                     scene.render, lambda: scene.remove(lamp), lambda: scene.camera("perspective"),
+                     lambda: context.load_text("WorldBegin"), context.scene):
+            refused(afterglow.Error, "is at work", rendering.advance, 1 << 14, call)
+        rendering.advance(4, rendering.watch)
+        assert rendering.sample_counts()[0] >= 4 and numpy.isfinite(rendering.pixels()).all()
+    scene.remove(lamp)
+    scene.light("point")
+    assert scene.render(size="8x8", spp=1, photons=100).max() > 0
+END
+echo "ok: calls while it is at work"

@@ -18,6 +18,7 @@ where they lie, which copies them once. Pictures are arrays of shape (height, wi
 
 The library is libafterglow.so, found as the system finds libraries, or named by $AFTERGLOW_LIBRARY. A context and its
 scenes belong to one thread at a time; rendering lets go of Python's lock, so that other threads go on meanwhile.
+Callbacks may call cancel and watch alone: other calls are errors while the context is at work.
 """
 
 from __future__ import annotations
@@ -207,7 +208,10 @@ def _opened(held, what):
 
 
 def _text(value):
-    return None if value is None else os.fsencode(value)
+    made = None if value is None else os.fsencode(value)
+    if made and b"\0" in made:
+        raise ValueError("a text with a NUL in it cannot be handed on")
+    return made
 
 
 def _matrix(value, kept):
@@ -305,6 +309,7 @@ class Context:
         self._callbacks = (_LOG(self._hear), _PROGRESS(self._tell))  # they live as long as the context
         self._held = c_void_p()
         self._scenes = []  # that are not closed
+        self._is_at_work = False
         settings = _ContextSettings(struct_size=ctypes.sizeof(_ContextSettings), thread_count=threads,
                                     working_space=_text(working_space), color_config=_text(color_config),
                                     log=self._callbacks[0], progress=self._callbacks[1])
@@ -343,6 +348,20 @@ class Context:
     def _work(self, function, *arguments, poll=None):
         """Calls the library on a thread of its own, so that Ctrl-C is heard here meanwhile, and calls it off. poll: called
         about every 0.1 s; so does an exception there."""
+        self._expect_rest()
+        self._is_at_work = True
+        try:
+            status = self._work_aside(function, arguments, poll)
+        finally:
+            self._is_at_work = False
+        self._check(status)
+
+    def _expect_rest(self):
+        """Errors: Error, where the context is at work; its callbacks may not call what would work with it as well."""
+        if self._is_at_work:
+            raise Error("the context is at work, and until that is done only cancel and watch can be called")
+
+    def _work_aside(self, function, arguments, poll):
         result, failed = [], []
         is_done = threading.Event()  # an interrupted Thread.join takes the thread for ended (bpo-45274)
 
@@ -371,7 +390,7 @@ class Context:
             raise
         if failed:
             raise failed[0]
-        self._check(result[0])
+        return result[0]
 
     def cancel(self) -> None:
         """Calls the work under way off, within 50 ms; from any thread."""
@@ -379,6 +398,7 @@ class Context:
 
     def scene(self, editable: bool = False) -> Scene:
         """An empty scene. editable: it can be changed once it is complete."""
+        self._expect_rest()
         settings = _SceneSettings()
         _library.ag_struct_fill(_SCENE_SETTINGS, byref(settings), ctypes.sizeof(settings))
         settings.is_editable = editable
@@ -395,6 +415,7 @@ class Context:
 
     def close(self) -> None:
         """Ends the context; closes its scenes and their renderings."""
+        self._expect_rest()
         for scene in list(self._scenes):
             scene.close()
         if self._held:
@@ -435,6 +456,7 @@ class Scene:
 
     def _call(self, function, *arguments, handle=None, lent=None):
         """handle: a c_uint64 with the handle of what borrows the arrays `lent` from now on, or with None none any more."""
+        self._context._expect_rest()
         status = function(self._pointer, *arguments)
         if status == 0:  # before anything is raised: what was done is done, whoever takes offence at a warning
             self._is_complete = False
@@ -560,6 +582,7 @@ class Scene:
                world_from_camera: Optional[ArrayLike] = None, world_from_camera_end: Optional[ArrayLike] = None,
                medium: Optional[str] = None) -> None:
         """The camera, instead of the one before. It looks along +z; x is to the right and y up."""
+        self._context._expect_rest()
         kept = []
         items, count = _parameters(parameters, kept)
         made = _Camera(ctypes.sizeof(_Camera), _text(type), items, count, _matrix(world_from_camera, kept),
@@ -627,6 +650,7 @@ class Scene:
 
     def close(self) -> None:
         """Forgets the scene; closes its renderings."""
+        self._context._expect_rest()
         for rendering in list(self._renderings):
             rendering.close()
         if self in self._context._scenes:
@@ -714,12 +738,15 @@ class Rendering:
     def denoise(self, poll: _Poll = None) -> None:
         """Ends the rendering and takes the noise out of R, G and B, by Open Image Denoise; denoise=True among the
         settings has kept what it needs. The channels stay to be read."""
+        self._context._expect_rest()
         _library.ag_rendering_finish(self._pointer, byref(self._film))
         self._held = c_void_p()
         self._context._work(_library.ag_film_denoise, self._context._pointer, self._film, poll=poll)
 
     def close(self) -> None:
         """Ends the rendering and forgets its picture."""
+        if self._held:
+            self._context._expect_rest()
         if self in self._scene._renderings:
             self._scene._renderings.remove(self)
         _library.ag_rendering_finish(self._held, None)
