@@ -126,6 +126,7 @@ def _principled(baker, node, path):
     parameters.update(baker.number("transmission", inputs["Transmission"], path))
     parameters.update(baker.number("clearcoat", inputs["Clearcoat"], path, change=lambda v: 0.25 * v))
     parameters.update(baker.number("clearcoat_roughness", inputs["Clearcoat Roughness"], path))
+    parameters["bool is_thin"] = False
     if is_glass:
         parameters["float ior"] = max(_constant(baker, node, "IOR", path), 1.0)
     elif specular > 0:
@@ -158,7 +159,7 @@ def _glass(baker, node, path):
         parameters["float roughness"] = 0
     else:
         parameters.update(baker.number("roughness", node.inputs["Roughness"], path))
-    parameters.update({"float transmission": 1, "float ior": max(_constant(baker, node, "IOR", path), 1.0)})
+    parameters.update({"bool is_thin": False, "float transmission": 1, "float ior": max(_constant(baker, node, "IOR", path), 1.0)})
     parameters.update(_maps(baker, node, path))
     return Surface("principled", parameters)
 
