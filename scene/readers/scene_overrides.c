@@ -212,7 +212,9 @@ static ag_status add_sky(run_context *run, const compass *c, scene *s)
         status = AG_ERROR_ARGUMENT;
     }
     if (status != AG_OK) {
-        if (status != AG_ERROR_MEMORY)
+        if (status != AG_ERROR_MEMORY && asked->sky_file)
+            log_message(run->log, AG_LOG_ERROR, "the sky that is asked for, \"%s\": %s", asked->sky_file, message);
+        else if (status != AG_ERROR_MEMORY)
             log_message(run->log, AG_LOG_ERROR, "the sky that is asked for: %s", message);
         light_reset(&sky);
         return status;

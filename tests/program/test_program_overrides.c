@@ -342,7 +342,7 @@ static void mistakes_are_told(void **state)
         {{"--sky=1,2"}, "--sky: '1,2' is not valid", 2},
         {{"--sky=-1"}, "is not valid", 2},
         {{"--sky="}, "is not valid", 2},
-        {{"--sky=none.exr"}, "the sky that is asked for: No such file", 1},
+        {{"--sky=none.exr"}, "the sky that is asked for, \"none.exr\": No such file", 1},
         {{"--sky=odd.exr"}, "\"odd.exr\" is 2 x 3: the picture of such a light is square", 1},
         {{"--sky-strength=2"}, "are for --sky, which is not given", 2},
         {{"--up=w", "--sky=1"}, "--up: 'w' is not valid", 2},

@@ -191,7 +191,7 @@ static void settings_are_heeded(void **state)
     assert_int_equal(ag_scene_create(d.context, &asked, &scene), AG_OK);
     memset(sky_file, 'x', sizeof sky_file); /* it was copied */
     assert_int_equal(ag_scene_commit(scene), AG_ERROR_INPUT);
-    expect_said(&d, "the sky that is asked for: No such file");
+    expect_said(&d, "the sky that is asked for, \"gone\": No such file");
     ag_scene_destroy(scene);
     end(&d);
 }
