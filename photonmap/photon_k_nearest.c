@@ -123,6 +123,8 @@ void disc_kernels_search(const disc_kernels *kernels, photon_found *found, const
         /* too few: by how many tells how much farther to look */
         limit = fminf(limit * fminf(4.0f, 1.3f * (float)wanted / (float)(found->count + 1)), largest);
     }
+    if (found->other > found->limit)
+        found->other = INFINITY; /* what is known beyond the limit depends on where the search began */
     if (in_out_hint)
         *in_out_hint = (photon_search_hint){position, found->limit, PHOTON_NONE};
 }

@@ -297,6 +297,49 @@ static void nothing_behind_the_last_leaf_is_found(void **state)
     test_run_reset(&r);
 }
 
+/* What a search finds does not depend on what was searched for before, near or far. */
+static void hints_change_no_answer(void **state)
+{
+    (void)state;
+    enum { WANTED = 51, SEARCHES = 4000 / FEWER };
+    const vec3 up = {0.0f, 0.0f, 1.0f}, aside = {1.0f, 0.0f, 0.0f};
+    test_run r;
+    test_run_init(&r, 1);
+    rng random = test_random(6);
+    photon *p = photon_records_create(COUNT);
+    assert_non_null(p);
+    for (uint32_t i = 0; i < COUNT; i++)
+        p[i] = (photon){.position = {rng_float(&random), rng_float(&random), 0.0f},
+                        .normal = direction_encode(i % 64 ? up : aside)};
+    photon_tree tree;
+    assert_int_equal(photon_tree_build(&r.run, p, COUNT, 0.0, 1.0, &tree), AG_OK);
+    photon_neighbor *scratch[2];
+    photon_found found[2];
+    for (int k = 0; k < 2; k++) {
+        scratch[k] = aligned_alloc(64, (photon_neighbors_capacity(WANTED) * sizeof **scratch + 63) / 64 * 64);
+        assert_non_null(scratch[k]);
+        photon_found_init(&found[k], &tree, WANTED, scratch[k]);
+    }
+    photon_search_hint hint = {.leaf = PHOTON_NONE};
+    vec3 at = {0.5f, 0.5f, 0.0f};
+    for (uint32_t i = 0; i < SEARCHES; i++) {
+        vec3 far = {rng_float(&random), rng_float(&random), 0.0f};
+        vec3 step = vec3_scale(vec3_sub(far, at), i % 16 ? 0.05f : 1.0f);
+        at = vec3_add(at, step);
+        photon_found_search(&found[0], &tree, at, up, 0.5f, 1.0f, WANTED, NULL);
+        photon_found_search(&found[1], &tree, at, up, 0.5f, 1.0f, WANTED, &hint);
+        assert_int_equal(found[0].count, found[1].count);
+        if (found[0].limit != found[1].limit || found[0].other != found[1].other)
+            fail_msg("search %u: a limit of %.9g, %.9g with a hint; another photon at %.9g, %.9g", i,
+                     (double)found[0].limit, (double)found[1].limit, (double)found[0].other, (double)found[1].other);
+    }
+    for (int k = 0; k < 2; k++)
+        free(scratch[k]);
+    photon_tree_reset(&tree);
+    free(p);
+    test_run_reset(&r);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -304,6 +347,7 @@ int main(void)
         cmocka_unit_test(the_nearest_are_kept),
         cmocka_unit_test(leaves_of_subtrees_are_found),
         cmocka_unit_test(nothing_behind_the_last_leaf_is_found),
+        cmocka_unit_test(hints_change_no_answer),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
