@@ -15,18 +15,20 @@ enum { ADAPTIVE_SAMPLES = 64 };
  * are enough find that out, and behind windows, where light comes from is what is known least. */
 enum { GATHER_RAYS_PER_LIGHT_SAMPLE = 8, FIRST_LIGHTS = 16 };
 enum { RAYS_MAX = 64, LIGHTS_MAX = 16 };
-/* Caustics that a block's first samples have missed are four times as bright as they would be, at most. */
-enum { CAUSTIC_BITS_MAX = 2 };
+/* Caustics that a block's first samples have missed are 2 to this power times as bright, at most; blocks that stop at a
+ * level of noise might stop before they are asked for. */
+enum { CAUSTIC_BITS_FIXED = 2, CAUSTIC_BITS_ADAPTIVE = 1 };
 
 /* Rays and light samples of the first camera samples, at least: from one the variance cannot be told, and the pilot may
  * have looked past small things. */
 enum { FIRST_RAYS_MIN = 4, FIRST_LIGHTS_MIN = 4 };
 
-/* With a fixed number N of camera samples each block has so many gather rays for each, or half of the most: samples
- * along edges vary much, but are spread so well that little of that is left in the mean. For the same reason inner
- * samples are worth the fourth root of N times what the variance of single camera samples says: that of N stratified
- * ones falls by N^1.5 along an edge (Mitchell, "Consequences of Stratified Sampling in Graphics", 1996). */
+/* With a fixed number of camera samples each block has so many gather rays for each, or half of the most: samples along
+ * edges vary much, but are spread so well that little of that is left in the mean (Mitchell, "Consequences of
+ * Stratified Sampling in Graphics", 1996). So inner samples are worth more than the variance of single camera samples
+ * says: by the root of how many of these there are, but no more than twice, as measured in five scenes. */
 enum { FIXED_LEAST = 8 };
+static const double FIXED_FACTOR_MOST = 2.0;
 /* With a fixed number of camera samples no block needs a standard error (noise.h) below this, which nobody sees. */
 static const double FIXED_CLEAN = 0.003;
 
@@ -37,6 +39,8 @@ static const double PILOT_HALF_WINDOW = 2.0;
 /* The least share of the variance between samples that counts as the camera samples' own: the rest that remains after
  * subtracting the others is not well known. */
 static const double LEAST_REST = 1.0 / 64.0;
+
+static const double SQRT_2 = 1.4142135623730951;
 
 bool splitting_is_open(const ag_render_settings *settings, bool splits_samples)
 {
@@ -69,7 +73,8 @@ split_counts splitting_most(const ag_render_settings *settings, bool splits_samp
     if (!splitting_is_open(settings, splits_samples))
         return most;
     most.lights = LIGHTS_MAX;
-    most.caustic_bits = CAUSTIC_BITS_MAX;
+    if (!(settings->clamp_indirect > 0.0f)) /* a bound would cut what chance has made brighter */
+        most.caustic_bits = settings->noise_level > 0.0f ? CAUSTIC_BITS_ADAPTIVE : CAUSTIC_BITS_FIXED;
     if (settings->noise_level > 0.0f && most.rays < RAYS_MAX) /* else the first rays bound the time */
         most.rays = RAYS_MAX;
     return most;
@@ -130,41 +135,56 @@ typedef struct choice {
     split_counts least, most;
 } choice;
 
-/* The power of two nearest by ratio to the number that is best, within bounds. */
-static uint32_t best_count(const block_sums *sums, double by_one, double cost_of_one, const choice *c, uint32_t least,
-                           uint32_t most)
+/* What a camera sample has apart from the parts that are chosen: variance and cost, summed over the block. */
+typedef struct camera_part {
+    double variance, cost;
+} camera_part;
+
+/* caustics: how many times their mean square is in the variance, beyond that of caustics which are always asked for. */
+static camera_part camera_part_of(const block_sums *sums, const choice *c, double caustics, double cost)
 {
-    double rest = fmax(sums->all - sums->by_parts, LEAST_REST * sums->all), wanted = 1.0;
-    rest = fmax(rest, c->clean * sums->pixels);
-    if (rest > 0.0 && cost_of_one > 0.0)
-        wanted = c->factor * sqrt(by_one / rest * sums->cost_of_rest / cost_of_one);
+    double variance = fmax(sums->all - sums->by_parts + caustics * sums->caustic, LEAST_REST * sums->all);
+    return (camera_part){fmax(variance, c->clean * sums->pixels), cost};
+}
+
+/* The number of samples of a part that is best for each camera sample. */
+static double wanted_count(const camera_part *rest, const choice *c, double by_one, double cost_of_one)
+{
+    if (!(rest->variance > 0.0 && cost_of_one > 0.0))
+        return 1.0;
+    return c->factor * sqrt(by_one / rest->variance * rest->cost / cost_of_one);
+}
+
+/* The power of two nearest by ratio to the number that is wanted, within bounds. */
+static uint32_t best_count(double wanted, uint32_t least, uint32_t most)
+{
     uint32_t count = 1;
-    while (count < most && (double)count * 1.4142135623730951 < wanted)
+    while (count < most && (double)count * SQRT_2 < wanted)
         count *= 2;
     count = count > least ? count : least;
     return count < most ? count : most;
 }
 
-/* The best share of samples that ask for caustics, as splitting.h has it, as a power of two that is nearest by ratio.
- */
-static uint32_t best_caustic_bits(const block_sums *sums, const choice *c)
+static uint32_t best_caustic_bits(double wanted, uint32_t most)
 {
-    double rest = fmax(sums->all - sums->by_parts - sums->caustic, LEAST_REST * sums->all), wanted = 1.0;
-    rest = fmax(rest, c->clean * sums->pixels);
-    if (rest > 0.0 && sums->cost_of_caustic > 0.0)
-        wanted = c->factor * sqrt(sums->caustic / rest * sums->cost_of_rest / sums->cost_of_caustic);
     uint32_t bits = 0;
-    while (bits < c->most.caustic_bits && wanted * (double)(2u << bits) < 1.4142135623730951)
+    while (bits < most && wanted * (double)(2u << bits) < SQRT_2)
         bits++;
     return bits;
 }
 
 static split_counts best_counts(const block_sums *sums, const choice *c)
 {
+    camera_part rest = camera_part_of(sums, c, -1.0, sums->cost_of_rest);
+    uint32_t bits =
+        best_caustic_bits(wanted_count(&rest, c, sums->caustic, sums->cost_of_caustic), c->most.caustic_bits);
+    double shared = (double)(1u << bits); /* so many samples share an estimate of caustics */
+    rest = camera_part_of(sums, c, shared - 1.0, sums->cost_of_rest + sums->cost_of_caustic / shared);
     return (split_counts){
-        .caustic_bits = best_caustic_bits(sums, c),
-        .rays = best_count(sums, sums->by_ray, sums->cost_of_ray, c, c->least.rays, c->most.rays),
-        .lights = best_count(sums, sums->by_light, sums->cost_of_light, c, c->least.lights, c->most.lights)};
+        .caustic_bits = bits,
+        .rays = best_count(wanted_count(&rest, c, sums->by_ray, sums->cost_of_ray), c->least.rays, c->most.rays),
+        .lights =
+            best_count(wanted_count(&rest, c, sums->by_light, sums->cost_of_light), c->least.lights, c->most.lights)};
 }
 
 static choice make_choice(const ag_render_settings *settings)
@@ -176,7 +196,7 @@ static choice make_choice(const ag_render_settings *settings)
                 splitting_most(settings, true)};
     if (settings->noise_level > 0.0f)
         return c;
-    c.factor = sqrt(sqrt((double)settings->samples_per_pixel));
+    c.factor = fmin(sqrt((double)settings->samples_per_pixel), FIXED_FACTOR_MOST);
     c.least.rays = (c.most.rays + 1) / 2 < FIXED_LEAST ? (c.most.rays + 1) / 2 : FIXED_LEAST;
     c.clean = FIXED_CLEAN * FIXED_CLEAN * settings->samples_per_pixel;
     return c;

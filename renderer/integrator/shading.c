@@ -102,10 +102,9 @@ static direct_light direct_radiance(const transport *t, eye_worker *worker, cons
 static rgb caustic_radiance(const transport *t, eye_worker *worker, const vertex *v, const camera_sample *from,
                             const eye_path *path, eye_sample *sample)
 {
-    bool is_first = path->scatterings == 0, is_bounded = t->settings->clamp_indirect > 0.0f;
     rgb seen = rgb_scale(path->throughput, path->share);
-    float of_block = is_bounded ? 1.0f : 1.0f / (float)(1u << from->split.caustic_bits);
-    float of_path = is_first ? 1.0f : transport_caustic_probability(t, rgb_max(seen));
+    float of_block = 1.0f / (float)(1u << from->split.caustic_bits);
+    float of_path = path->scatterings == 0 ? 1.0f : transport_caustic_probability(t, rgb_max(seen));
     uint64_t before = eye_worker_cost(worker);
     rgb caustic = transport_some_caustics(t, worker, v, of_block * of_path,
                                           sampler_2d(&path->where, SAMPLE_ROULETTE, eye_path_key(path)).y);

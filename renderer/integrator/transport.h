@@ -116,7 +116,7 @@ static inline bool transport_survives(rgb *in_out_throughput, float u)
 /* The caustic map's light at a diffuse vertex: reflected radiance. */
 rgb transport_caustics(const transport *t, eye_worker *worker, const vertex *v);
 
-/* How often caustics are to be asked for where this share of them reaches the eye, (0, 1]. */
+/* How often caustics are to be asked for where this share of them reaches the eye, [0, 1]. */
 float transport_caustic_probability(const transport *t, float share_seen);
 
 /* An estimate of transport_caustics, equal on average, that asks the map with this probability; u is a random number in

@@ -77,8 +77,8 @@ static void test_best_numbers(void **state)
     static const struct {
         float noise_level;
         uint32_t rays, lights, no_rays; /* the best; gather rays where they bring no noise */
-        uint32_t caustic_bits;
-    } cases[] = {{0.0f, 8, 4, 8, 0}, {0.01f, 4, 2, 1, 1}};
+        uint32_t caustic_bits, no_caustic_bits;
+    } cases[] = {{0.0f, 8, 4, 8, 0, 2}, {0.01f, 4, 2, 1, 1, 1}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         ag_render_settings settings = settings_of(cases[i].noise_level, 16);
         ag_film *film = create_film(&settings);
@@ -87,14 +87,14 @@ static void test_best_numbers(void **state)
                 film->wanted[k] = 16;
         assert_int_equal(splitting_decide(film, &settings, 16), 4);
         expect_counts(film, 3, 16, 16);
-        add_block(film, 0, 0.04, 0.04, 0.02, 0.008);
+        add_block(film, 0, 0.04, 0.04, 0.01, 0.008);
         add_block(film, FILM_BLOCK, 0.04, 0.0, 0.0, 0.0);
         for (int times = 0; times < 2; times++) { /* again changes nothing */
             assert_int_equal(splitting_decide(film, &settings, 16), 16);
             expect_counts(film, 3, cases[i].rays, cases[i].lights);
             expect_counts(film, 11, cases[i].no_rays, 1);
             assert_int_equal(film->splits[film_pixel_at(film, 3, 3)].counts.caustic_bits, cases[i].caustic_bits);
-            assert_int_equal(film->splits[film_pixel_at(film, 11, 3)].counts.caustic_bits, 2); /* at most */
+            assert_int_equal(film->splits[film_pixel_at(film, 11, 3)].counts.caustic_bits, cases[i].no_caustic_bits);
         }
         assert_int_equal(splitting_decide(film, &settings, 4), 4); /* nothing to do */
         ag_film_destroy(film);
@@ -107,7 +107,7 @@ static void test_first_numbers(void **state)
     (void)state;
     ag_render_settings settings = settings_of(0.0f, 2), pilots = settings_of(0.0f, 4);
     ag_film *pilot = create_film(&pilots), *film;
-    add_block(pilot, 0, 0.04, 0.64, 0.16, 0.008);
+    add_block(pilot, 0, 0.04, 0.64, 0.16, 0.004);
     add_block(pilot, FILM_BLOCK, 0.04, 0.0, 0.0, 0.0);
     settings.width = 5 * WIDTH; /* five blocks of it lie in one of the pilot */
     settings.crop_window[0] = 0.3;
@@ -116,8 +116,8 @@ static void test_first_numbers(void **state)
     for (int times = 0; times < 2; times++) {
         split_counts lit = film->splits[film_pixel_at(film, 31, 3)].counts,
                      dark = film->splits[film_pixel_at(film, 64, 3)].counts;
-        /* the fourth root of 2 times sqrt(0.64 / 0.04 * 40 / 4) = 12.6 and sqrt(0.16 / 0.04 * 40 / 4) = 6.3; in the
-         * dark the least of both */
+        /* Caustics: the root of 2 times sqrt(0.004 / 0.036 * 40 / 40) = 0.47. Likewise sqrt(0.64 / 0.044 * 60 / 4)
+         * gives 20.9 and sqrt(0.16 / 0.044 * 60 / 4) 10.4; in the dark the least of both. */
         assert_true(lit.rays == 16 && lit.lights == 8 && lit.ray_shift == 0);
         assert_true(dark.rays == 8 && dark.lights == 4);
         film_clear(film, &settings);
@@ -141,6 +141,21 @@ static void test_first_numbers_of_the_unknown(void **state)
     assert_true(first.rays == 4 && first.lights == 16);
     ag_film_destroy(film);
     ag_film_destroy(pilot);
+}
+
+/* Where light is bounded caustics are asked for always. */
+static void test_bounded_light(void **state)
+{
+    (void)state;
+    ag_render_settings settings = settings_of(0.0f, 16);
+    settings.clamp_indirect = 1.0f;
+    ag_film *film = create_film(&settings);
+    add_block(film, 0, 0.04, 0.04, 0.02, 0.0);
+    add_block(film, FILM_BLOCK, 0.04, 0.0, 0.0, 0.0);
+    assert_int_equal(splitting_decide(film, &settings, 16), 16);
+    for (size_t pixel = 0; pixel < film_area_count(film); pixel++)
+        assert_int_equal(film->splits[pixel].counts.caustic_bits, 0);
+    ag_film_destroy(film);
 }
 
 static void test_given_number(void **state)
@@ -338,6 +353,7 @@ int main(void)
         cmocka_unit_test(test_best_numbers),
         cmocka_unit_test(test_first_numbers),
         cmocka_unit_test(test_first_numbers_of_the_unknown),
+        cmocka_unit_test(test_bounded_light),
         cmocka_unit_test(test_given_number),
         cmocka_unit_test(test_expectation),
         TEST_IN_FOLDER(test_same_bits),
