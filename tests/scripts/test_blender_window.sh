@@ -7,16 +7,9 @@ set -euo pipefail
 # shellcheck source=tests/fixtures/shell_test.sh
 source "$(dirname "${BASH_SOURCE[0]}")/../fixtures/shell_test.sh"
 need blender Xvfb xdotool
-export AFTERGLOW_LIBRARY=$AFTERGLOW_BUILD_DIR/lib/libafterglow.so PYTHONDONTWRITEBYTECODE=1 LIBGL_ALWAYS_SOFTWARE=1
-export HOME=$folder/home BLENDER_USER_SCRIPTS=$folder/scripts
-mkdir -p "$HOME" "$BLENDER_USER_SCRIPTS"
-if ldd "$AFTERGLOW_LIBRARY" | grep 'lib[at]san\|libubsan' >/dev/null; then
-    skip "the library is built with sanitizers"
-fi
-version=$(blender --version | sed -n 's/^Blender \([0-9.]*\).*/\1/p')
-[[ $version == 3.4* ]] || skip "this blender is $version, not 3.4"
-blender -b --python-exit-code 1 --python-expr 'import numpy' >numpy.log 2>&1 || skip "this blender has no numpy"
-cd "$folder"
+export LIBGL_ALWAYS_SOFTWARE=1
+# shellcheck source=tests/fixtures/blender_test.sh
+source "$(dirname "${BASH_SOURCE[0]}")/../fixtures/blender_test.sh"
 
 mkfifo screen
 Xvfb -displayfd 7 -screen 0 800x600x24 7>screen 2>xvfb.log &
