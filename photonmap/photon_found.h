@@ -19,7 +19,7 @@ typedef struct photon_found {
     photon_neighbor *scratch; /* [capacity] */
 } photon_found;
 
-/* What the next search of a worker may begin with; it changes the time of searches alone. */
+/* A worker's next search may begin with this hint of its last one, which changes the time of searches alone. */
 typedef struct photon_search_hint {
     vec3 position;        /* of the last search */
     float radius_squared; /* of the disc that it found; 0: there was none */

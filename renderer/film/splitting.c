@@ -135,7 +135,7 @@ typedef struct choice {
     split_counts least, most;
 } choice;
 
-/* What a camera sample has apart from the parts that are chosen: variance and cost, summed over the block. */
+/* Variance and cost of camera samples without the parts that are chosen, summed over the block. */
 typedef struct camera_part {
     double variance, cost;
 } camera_part;

@@ -297,7 +297,7 @@ static void nothing_behind_the_last_leaf_is_found(void **state)
     test_run_reset(&r);
 }
 
-/* What a search finds does not depend on what was searched for before, near or far. */
+/* A search finds the same photons whatever the worker has searched for before, near or far. */
 static void hints_change_no_answer(void **state)
 {
     (void)state;
