@@ -19,7 +19,8 @@ static bool scratch_create(irradiance_scratch *s, const photon_map *map)
     s->order[0] = malloc(IRRADIANCE_BATCH_MAX * sizeof *s->order[0]);
     s->order[1] = malloc(IRRADIANCE_BATCH_MAX * sizeof *s->order[1]);
     s->leaves = malloc(IRRADIANCE_BATCH_MAX * sizeof *s->leaves);
-    return s->neighbors && s->order[0] && s->order[1] && s->leaves;
+    s->distances_squared = malloc(IRRADIANCE_BATCH_MAX * sizeof *s->distances_squared);
+    return s->neighbors && s->order[0] && s->order[1] && s->leaves && s->distances_squared;
 }
 
 static void scratch_reset(irradiance_scratch *s)
@@ -28,6 +29,7 @@ static void scratch_reset(irradiance_scratch *s)
     free(s->order[0]);
     free(s->order[1]);
     free(s->leaves);
+    free(s->distances_squared);
 }
 
 ag_status irradiance_cache_create(photon_map *map, irradiance_cache_mode mode, unsigned worker_count,
@@ -232,15 +234,16 @@ static bool answer_without_photon(irradiance_cache *cache, const irradiance_quer
     return holds;
 }
 
-/* Answers a query by an irradiance photon whose word is ready. Returns whether there is an answer. */
+/* Answers a query by an irradiance photon, at that squared distance, whose word is ready. Returns whether there is an
+ * answer. */
 static bool answer_by_word(irradiance_cache *cache, const irradiance_query *query, uint32_t irradiance_photon,
-                           uint32_t word, unsigned worker_index, rgb *out_irradiance)
+                           float distance_squared, uint32_t word, unsigned worker_index, rgb *out_irradiance)
 {
     const photon_map *map = cache->map;
     uint32_t value = word & IRRADIANCE_VALUE_MASK;
     bool holds = value != PHOTON_NO_IRRADIANCE;
     rgb irradiance = holds ? photon_map_decode_irradiance(map, value) : rgb_gray(0.0f);
-    if (holds && !photon_map_reaches(map, irradiance_photon, query->position, irradiance))
+    if (holds && !photon_map_reaches(map, irradiance_photon, distance_squared, irradiance))
         return answer_without_photon(cache, query, PHOTON_NONE, worker_index, out_irradiance);
     if (irradiance_word_state(word) == IRRADIANCE_READY_IN_SIGHT && map->surfaces)
         holds = !photon_map_is_beyond_gap(map, map->irradiance_photons.blocks, query->position, query->normal,
@@ -248,6 +251,16 @@ static bool answer_by_word(irradiance_cache *cache, const irradiance_query *quer
     *out_irradiance = holds ? irradiance : rgb_gray(0.0f);
     cache->counters[worker_index].refused += !holds;
     return holds;
+}
+
+/* answer_by_word for a request, whose photon's distance is not kept. */
+static void answer_request(irradiance_cache *cache, uint32_t word, unsigned worker_index, irradiance_request *request)
+{
+    vec3 at = photon_block_position(cache->map->irradiance_photons.blocks, request->irradiance_photon);
+    request->holds =
+        answer_by_word(cache, &request->query, request->irradiance_photon,
+                       vec3_distance_squared(request->query.position, at), word, worker_index, &request->irradiance);
+    request->irradiance_photon = PHOTON_NONE;
 }
 
 void irradiance_cache_get(irradiance_cache *cache, vec3 position, vec3 normal, unsigned worker_index,
@@ -264,14 +277,12 @@ void irradiance_cache_get(irradiance_cache *cache, vec3 position, vec3 normal, u
                                                    &out_request->irradiance);
         return;
     }
-    uint32_t word = demand(cache, irradiance_photon, worker_index);
-    if (irradiance_word_is_ready(word)) {
-        out_request->holds =
-            answer_by_word(cache, &out_request->query, irradiance_photon, word, worker_index, &out_request->irradiance);
-        return;
-    }
-    counters->deferred++;
     out_request->irradiance_photon = irradiance_photon;
+    uint32_t word = demand(cache, irradiance_photon, worker_index);
+    if (irradiance_word_is_ready(word))
+        answer_request(cache, word, worker_index, out_request);
+    else
+        counters->deferred++;
 }
 
 /* Sorts the queries into the map's order. Returns an array with a query's number in the low half of each entry, and the
@@ -306,9 +317,10 @@ static uint64_t *put_in_order(const photon_map *map, irradiance_scratch *scratch
     return from;
 }
 
-/* Finds the irradiance photon that stands for each query, and puts it into the high half of the query's entry. */
+/* Finds the irradiance photon that stands for each query, and puts it into the high half of the query's entry, and its
+ * squared distance beside. */
 static void find_irradiance_photons(const photon_map *map, const irradiance_query *queries, uint64_t *order,
-                                    uint32_t count, uint64_t *in_out_rays)
+                                    uint32_t count, uint64_t *in_out_rays, float *out_distances_squared)
 {
     enum { AT_ONCE = PHOTON_LOOKUPS_MAX };
     photon_walk walk;
@@ -320,89 +332,79 @@ static void find_irradiance_photons(const photon_map *map, const irradiance_quer
             const irradiance_query *q = &queries[(uint32_t)order[begin + k]];
             lookups[k] = (photon_lookup){q->position, q->normal, (uint32_t)(order[begin + k] >> 32)};
         }
-        for (uint32_t k = begin + some; k < begin + some + AT_ONCE && k < count; k++) /* the next ones */
-            __builtin_prefetch(&queries[(uint32_t)order[k]]);
-        photon_map_nearest_many(map, &walk, lookups, some, in_out_rays, irradiance_photons);
+        for (uint32_t k = begin + some; k < begin + some + AT_ONCE && k < count; k++) { /* the next ones */
+            const irradiance_query *next = &queries[(uint32_t)order[k]];
+            __builtin_prefetch(&next->position.x);
+            __builtin_prefetch(&next->normal.z); /* may lie on another line */
+        }
+        photon_map_nearest_many(map, &walk, lookups, some, in_out_rays, irradiance_photons,
+                                out_distances_squared + begin);
         for (uint32_t k = 0; k < some; k++)
             order[begin + k] = (uint64_t)irradiance_photons[k] << 32 | (uint32_t)order[begin + k];
     }
 }
 
-/* Prefetches what answer_by_word reads. */
-static void prefetch_answer(const photon_map *map, const irradiance_query *query, uint32_t irradiance_photon)
+/* Prefetches what demand and answer_by_word read, and where the answer is written. */
+static void prefetch_answer(const photon_map *map, uint32_t irradiance_photon, const rgb *out_irradiance)
 {
-    __builtin_prefetch(query);
-    if (irradiance_photon == PHOTON_NONE)
+    __builtin_prefetch(out_irradiance, 1);
+    if (irradiance_photon >= PHOTON_HIDDEN)
         return;
-    const photon_block *b = &map->irradiance_photons.blocks[irradiance_photon / PHOTON_BLOCK_LANES];
-    for (int a = 0; a < 3; a++)
-        __builtin_prefetch(b->position[a]);
-    __builtin_prefetch(b->flux);
+    __builtin_prefetch(map->irradiance_photons.blocks[irradiance_photon / PHOTON_BLOCK_LANES].flux);
     __builtin_prefetch(photon_map_slot(map, irradiance_photon));
 }
 
-/* Demands the irradiance of each photon in the order, and answers the queries that no photon stands for, whose entries
- * become PHOTON_NONE. Returns false where the run is cancelled meanwhile. */
-static bool demand_all(irradiance_cache *cache, const run_context *run, const irradiance_query *queries,
-                       uint64_t *order, uint32_t count, bool is_cached, unsigned worker_index, rgb *out_irradiance,
-                       bool *out_holds)
+/* Demands the irradiance of each photon in the order, and answers the queries whose photons' words are ready then or
+ * that no photon stands for. The entries of the others, which other threads are computing, are moved to the front;
+ * *out_waiting: how many there are. Returns false where the run is cancelled meanwhile. */
+static bool answer_most(irradiance_cache *cache, const run_context *run, const irradiance_query *queries,
+                        uint64_t *order, uint32_t count, unsigned worker_index, rgb *out_irradiance, bool *out_holds,
+                        uint32_t *out_waiting)
 {
-    enum { CANCEL_EVERY = 16 };
+    enum { CANCEL_EVERY = 16, AHEAD = 16 };
+    const float *distances_squared = cache->scratch[worker_index].distances_squared;
+    *out_waiting = 0;
     for (uint32_t k = 0; k < count; k++) {
-        uint32_t i = (uint32_t)order[k], irradiance_photon = is_cached ? (uint32_t)(order[k] >> 32) : PHOTON_NONE;
+        uint32_t i = (uint32_t)order[k], irradiance_photon = (uint32_t)(order[k] >> 32);
         if (k % CANCEL_EVERY == 0 && run_is_cancelled(run))
             return false;
+        if (k + AHEAD < count)
+            prefetch_answer(cache->map, (uint32_t)(order[k + AHEAD] >> 32),
+                            &out_irradiance[(uint32_t)order[k + AHEAD]]);
         if (irradiance_photon >= PHOTON_HIDDEN) {
-            order[k] = (uint64_t)PHOTON_NONE << 32 | i;
             out_holds[i] =
                 answer_without_photon(cache, &queries[i], irradiance_photon, worker_index, &out_irradiance[i]);
             continue;
         }
-        demand(cache, irradiance_photon, worker_index);
+        uint32_t word = demand(cache, irradiance_photon, worker_index);
+        if (irradiance_word_is_ready(word))
+            out_holds[i] = answer_by_word(cache, &queries[i], irradiance_photon, distances_squared[k], word,
+                                          worker_index, &out_irradiance[i]);
+        else
+            order[(*out_waiting)++] = order[k];
     }
     return true;
 }
 
-/* Answers the queries whose photons' words are ready. The entries of the others, which other threads are computing, are
- * moved to the front of the order; returns their number. */
-static uint32_t answer_ready(irradiance_cache *cache, const irradiance_query *queries, uint64_t *order, uint32_t count,
-                             unsigned worker_index, rgb *out_irradiance, bool *out_holds)
-{
-    enum { AHEAD = 8 };
-    const photon_map *map = cache->map;
-    uint32_t waiting = 0;
-    for (uint32_t k = 0; k < count; k++) {
-        uint32_t i = (uint32_t)order[k], irradiance_photon = (uint32_t)(order[k] >> 32);
-        if (k + AHEAD < count)
-            prefetch_answer(map, &queries[(uint32_t)order[k + AHEAD]], (uint32_t)(order[k + AHEAD] >> 32));
-        if (irradiance_photon == PHOTON_NONE)
-            continue;
-        uint32_t word = irradiance_slot_read(photon_map_slot(map, irradiance_photon));
-        if (irradiance_word_is_ready(word))
-            out_holds[i] =
-                answer_by_word(cache, &queries[i], irradiance_photon, word, worker_index, &out_irradiance[i]);
-        else
-            order[waiting++] = order[k];
-    }
-    return waiting;
-}
-
-/* Works in sweeps, so that each has the processor's caches to itself: it looks up the photons in the map's order,
- * computes what nobody has claimed, reads what is ready, and waits for the rest at the end. */
+/* Works in sweeps, so that each has the processor's caches to itself: it looks up the photons in the map's order, then
+ * computes what nobody has claimed and reads what is ready, and waits for the rest at the end. */
 void irradiance_cache_get_many(irradiance_cache *cache, const run_context *run, const irradiance_query *queries,
                                uint32_t count, unsigned worker_index, rgb *out_irradiance, bool *out_holds)
 {
     const photon_map *map = cache->map;
+    irradiance_scratch *scratch = &cache->scratch[worker_index];
     irradiance_counters *counters = &cache->counters[worker_index];
-    uint64_t *order = put_in_order(map, &cache->scratch[worker_index], queries, count);
-    bool is_cached = cache->mode != IRRADIANCE_UNCACHED && map->irradiance_photons.count > 0;
+    uint64_t *order = put_in_order(map, scratch, queries, count);
+    uint32_t waiting;
     counters->requests += count;
     store_relaxed_u64(&cache->shown[worker_index].requests, counters->requests);
-    if (is_cached)
-        find_irradiance_photons(map, queries, order, count, &counters->rays);
-    if (!demand_all(cache, run, queries, order, count, is_cached, worker_index, out_irradiance, out_holds))
+    if (cache->mode != IRRADIANCE_UNCACHED && map->irradiance_photons.count > 0)
+        find_irradiance_photons(map, queries, order, count, &counters->rays, scratch->distances_squared);
+    else
+        for (uint32_t k = 0; k < count; k++)
+            order[k] = (uint64_t)PHOTON_NONE << 32 | (uint32_t)order[k];
+    if (!answer_most(cache, run, queries, order, count, worker_index, out_irradiance, out_holds, &waiting))
         return;
-    uint32_t waiting = answer_ready(cache, queries, order, count, worker_index, out_irradiance, out_holds);
     counters->deferred += waiting;
     for (uint32_t k = 0; k < waiting; k++) {
         uint32_t i = (uint32_t)order[k];
@@ -426,9 +428,7 @@ void irradiance_cache_retry(irradiance_cache *cache, const run_context *run, irr
     }
     if (!irradiance_word_is_ready(word)) /* cancelled */
         word = irradiance_word(IRRADIANCE_READY, PHOTON_NO_IRRADIANCE);
-    request->holds =
-        answer_by_word(cache, &request->query, request->irradiance_photon, word, worker_index, &request->irradiance);
-    request->irradiance_photon = PHOTON_NONE;
+    answer_request(cache, word, worker_index, request);
 }
 
 rgb irradiance_cache_estimate(irradiance_cache *cache, vec3 position, vec3 normal, unsigned worker_index)

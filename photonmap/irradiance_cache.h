@@ -37,13 +37,14 @@ typedef struct irradiance_counters {
     double waited_seconds;          /* CPU time of waiting */
 } irradiance_counters;
 
-/* The scratch memory of one worker: for an estimate its neighbours; for a batch the leaves of its queries, and their
- * order by these. */
+/* The scratch memory of one worker: for an estimate its neighbours; for a batch the leaves of its queries, their order
+ * by these, and what has been found for them. */
 typedef struct irradiance_scratch {
     photon_neighbor *neighbors;
     photon_search_hint hint;
-    uint32_t *leaves;   /* [IRRADIANCE_BATCH_MAX] */
-    uint64_t *order[2]; /* of the queries, sorted from one to the other */
+    uint32_t *leaves;         /* [IRRADIANCE_BATCH_MAX] */
+    uint64_t *order[2];       /* of the queries, sorted from one to the other */
+    float *distances_squared; /* from each query, in that order, to the irradiance photon that stands for it */
 } irradiance_scratch;
 
 /* The counters of one worker that any thread may read while it works; relaxed, since they order nothing else. */

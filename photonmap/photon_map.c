@@ -242,27 +242,27 @@ uint32_t photon_map_nearest(const photon_map *map, vec3 position, vec3 normal, u
 }
 
 void photon_map_nearest_many(const photon_map *map, photon_walk *walk, const photon_lookup *lookups, uint32_t count,
-                             uint64_t *in_out_rays, uint32_t *out_irradiance_photons)
+                             uint64_t *in_out_rays, uint32_t *out_irradiance_photons, float *out_distances_squared)
 {
     const float far = photon_map_far(map);
     photon_neighbor nearest[PHOTON_LOOKUPS_MAX];
     photon_walk_nearest_many(walk, lookups, count, PHOTON_NEAREST_MIN_COS, nearest_reach(map), nearest);
-    for (uint32_t i = 0; i < count; i++)
-        out_irradiance_photons[i] =
-            in_sight(map, far, lookups[i].position, lookups[i].normal, photon_neighbor_index(nearest[i]),
-                     photon_neighbor_distance_squared(nearest[i]), in_out_rays);
+    for (uint32_t i = 0; i < count; i++) {
+        out_distances_squared[i] = photon_neighbor_distance_squared(nearest[i]);
+        out_irradiance_photons[i] = in_sight(map, far, lookups[i].position, lookups[i].normal,
+                                             photon_neighbor_index(nearest[i]), out_distances_squared[i], in_out_rays);
+    }
 }
 
 /* An irradiance is rejected where this many photons, on average, would lie nearer to the point than its own. */
 static const float EMPTY_DISC_PHOTONS = 8.0f;
 
-bool photon_map_reaches(const photon_map *map, uint32_t irradiance_photon, vec3 position, rgb irradiance)
+bool photon_map_reaches(const photon_map *map, uint32_t irradiance_photon, float distance_squared, rgb irradiance)
 {
     const photon_block *blocks = map->irradiance_photons.blocks;
     /* a record in a tree of its own has its photon's index instead of a flux */
     uint32_t photon_index =
         photon_map_all_have_irradiance(map) ? irradiance_photon : photon_block_flux(blocks, irradiance_photon);
-    float distance_squared = vec3_distance_squared(position, photon_block_position(blocks, irradiance_photon));
     double photons_each = (double)map->set.count / (double)map->irradiance_photons.count;
     double flux =
         (double)rgb_max(flux_decode(photon_block_flux(map->blocks, photon_index))) / (double)map->set.emitted_paths;

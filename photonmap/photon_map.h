@@ -97,11 +97,11 @@ float photon_map_far(const photon_map *map);
  * plane, that it must be visible, and it is not. The rays cast for that are added to *in_out_rays. */
 uint32_t photon_map_nearest(const photon_map *map, vec3 position, vec3 normal, uint64_t *in_out_rays);
 
-/* Returns whether the irradiance, W/m^2, of the photon nearest to a point may hold there. The disc around the point out
- * to that photon is empty; for photons with this one's flux, of the density that the irradiance implies, that has a
- * probability of one in three thousand at the limit. At the edge of a shadow, the photons there are the nearest to
- * points far in the dark, which would otherwise all be as bright as the edge. */
-bool photon_map_reaches(const photon_map *map, uint32_t irradiance_photon, vec3 position, rgb irradiance);
+/* Returns whether the irradiance, W/m^2, of the photon nearest to a point may hold there, at that squared distance from
+ * it. The disc around the point out to that photon is empty; for photons with this one's flux, of the density that the
+ * irradiance implies, that has a probability of one in three thousand at the limit. At the edge of a shadow, the
+ * photons there are the nearest to points far in the dark, which would otherwise all be as bright as the edge. */
+bool photon_map_reaches(const photon_map *map, uint32_t irradiance_photon, float distance_squared, rgb irradiance);
 
 /* Returns the leaf of the irradiance photons' tree that contains a point: lookups in nearby leaves touch the same
  * memory. */
@@ -112,9 +112,9 @@ void photon_map_leaves(const photon_map *map, const float *positions, uint32_t s
                        uint32_t *out_leaves);
 
 /* photon_map_nearest of many points, in the manner of photon_walk_nearest_many, with the leaves of photon_map_leaf.
- * walk: one over map->irradiance_photons. */
+ * walk: one over map->irradiance_photons. out_distances_squared: from the points to the photons found. */
 void photon_map_nearest_many(const photon_map *map, photon_walk *walk, const photon_lookup *lookups, uint32_t count,
-                             uint64_t *in_out_rays, uint32_t *out_irradiance_photons);
+                             uint64_t *in_out_rays, uint32_t *out_irradiance_photons, float *out_distances_squared);
 
 /* The 30 bits of a slot whose photon represents no point, since no estimate holds there. Final, like a value. */
 #define PHOTON_NO_IRRADIANCE IRRADIANCE_VALUE_MASK

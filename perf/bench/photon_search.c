@@ -92,13 +92,14 @@ static uint32_t nearest_sorted(bench *b)
         /* rays of one tile are in order */
         photon_lookup lookups[PHOTON_LOOKUPS_MAX];
         uint32_t photons[PHOTON_LOOKUPS_MAX], count = 0;
+        float distances_squared[PHOTON_LOOKUPS_MAX];
         uint64_t tile = b->sorted_hits[begin].order >> 32;
         for (end = begin; end < b->hit_count && count < PHOTON_LOOKUPS_MAX && b->sorted_hits[end].order >> 32 == tile;
              end++) {
             const ray_hit *h = &b->sorted_hits[end];
             lookups[count++] = (photon_lookup){h->position, h->normal, (uint32_t)h->order};
         }
-        photon_map_nearest_many(&b->map, &walk, lookups, count, &rays, photons);
+        photon_map_nearest_many(&b->map, &walk, lookups, count, &rays, photons, distances_squared);
         for (uint32_t i = 0; i < count; i++)
             b->sink += (double)photons[i];
     }
