@@ -76,7 +76,9 @@ cmp use_c.png use_cpp.png || fail "C and C++ give other pictures"
 
 # The Python module, beside the library that was installed.
 module=$(find "$prefix" -path '*/lib/python3/dist-packages/afterglow')
-[[ -s $module/__init__.py && -e $module/py.typed ]] || fail "no Python module, or it does not say that it has types"
+for file in "$root"/renderer/python/afterglow/*.*; do
+    cmp "$file" "$module/${file##*/}" || fail "of the Python module there is no ${file##*/}, or another one"
+done
 if find_python_with_numpy; then
     said=$(AFTERGLOW_LIBRARY=$library PYTHONDONTWRITEBYTECODE=1 PYTHONPATH=${module%/*} "$python" -c 'import afterglow; print(afterglow.version())')
     [[ "afterglow $said" == "$(<version)" ]] || fail "the Python module knows another version: $said"

@@ -74,9 +74,9 @@ for each in afterglow python3-afterglow; do
     [[ $changelog == "$each ($version-1) "* ]] || fail "changelog.Debian begins otherwise: $changelog"
     [[ $changelog == *" -- Ann Packager <ann@example.org>  Tue, 14 Nov 2023 22:13:20 +0000" ]] || fail "who and when: $changelog"
 done
-python_files=$(dpkg-deb -c "$python_package" | awk '$1 !~ /^d/ && $6 !~ /share\/doc/ { print $6 }')
+python_files=$(dpkg-deb -c "$python_package" | awk '$1 !~ /^d/ && $6 !~ /share\/doc/ { print $6 }' | LC_ALL=C sort)
 module=./usr/lib/python3/dist-packages/afterglow
-[[ $python_files == $module/__init__.py$'\n'$module/py.typed ]] || fail "the Python package holds $python_files"
+[[ $python_files == "$(cd "$root/renderer/python/afterglow" && printf "$module/%s\n" *.* | LC_ALL=C sort)" ]] || fail "the Python package holds $python_files"
 for script in postinst prerm; do
     dpkg-deb --ctrl-tarfile "$python_package" | tar -x --to-stdout "./$script" >"$script"
     sh -n "$script" || fail "$script is no shell script"

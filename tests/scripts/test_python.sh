@@ -12,24 +12,25 @@ export AFTERGLOW_LIBRARY=$AFTERGLOW_BUILD_DIR/lib/libafterglow.so PYTHONPATH=$ro
 cd "$folder"
 
 "$python" - >layout.c <<'END'
-import ctypes, afterglow
+import ctypes
+from afterglow import _interface
 print('#include "afterglow/afterglow.h"')
 for name in ["ContextSettings", "Parameter", "Shape", "Instance", "Light", "Camera", "Texture", "Image", "SceneSettings", "CommitCounts"]:
-    struct = getattr(afterglow, "_" + name)
+    struct = getattr(_interface, name)
     public = "ag_" + "".join("_" + c.lower() if c.isupper() else c for c in name)[1:]
     print(f'_Static_assert(sizeof({public}) == {ctypes.sizeof(struct)}, "size of {public}");')
     for field, *_ in struct._fields_:
         offset = getattr(struct, field).offset
         print(f'_Static_assert(offsetof({public}, {field}) == {offset}, "{public}.{field}");')
-for i, name in enumerate(afterglow._PARAMETER_TYPES):
+for i, name in enumerate(_interface.PARAMETER_TYPES):
     print(f'_Static_assert(AG_PARAMETER_{name.upper()} == {i}, "{name}");')
-for name, i in afterglow._HINTS.items():
+for name, i in _interface.HINTS.items():
     print(f'_Static_assert(AG_HINT_{name.upper().replace("PIXELF", "PIXEL_F")} == {i}, "{name}");')
-for i, name in enumerate(afterglow._NAMED):
+for i, name in enumerate(_interface.NAMED):
     print(f'_Static_assert(AG_NAMED_{name.upper().replace(" ", "_")} == {i}, "{name}");')
-print(f'_Static_assert(AG_STRUCT_SCENE_SETTINGS == {afterglow._SCENE_SETTINGS}, "AG_STRUCT_SCENE_SETTINGS");')
-print(f'_Static_assert(AG_CANCELLED == {afterglow._CANCELLED}, "AG_CANCELLED");')
-print(f'_Static_assert(AG_STRUCT_RENDER_SETTINGS == {afterglow._RENDER_SETTINGS}, "AG_STRUCT_RENDER_SETTINGS");')
+print(f'_Static_assert(AG_STRUCT_SCENE_SETTINGS == {_interface.SCENE_SETTINGS}, "AG_STRUCT_SCENE_SETTINGS");')
+print(f'_Static_assert(AG_CANCELLED == {_interface.CANCELLED}, "AG_CANCELLED");')
+print(f'_Static_assert(AG_STRUCT_RENDER_SETTINGS == {_interface.RENDER_SETTINGS}, "AG_STRUCT_RENDER_SETTINGS");')
 END
 "$CC" -std=c17 -I "$root/renderer/include" -I "$root/threads/include" -fsyntax-only layout.c ||
     fail "the module's structs are not the header's"
@@ -37,11 +38,12 @@ echo "ok: layout"
 
 # tests/fixtures/public_abi.txt is what the headers say (test_public_abi.sh).
 "$python" - "$root/tests/fixtures/public_abi.txt" <<'END' || fail "the module's functions are not the header's"
-import ctypes, re, sys, afterglow
+import ctypes, re, sys
+from afterglow import _interface
 
 NAMED = {"void": None, "int": ctypes.c_int, "size_t": ctypes.c_size_t, "uint64_t": ctypes.c_uint64,
          "ag_handle": ctypes.c_uint64, "float": ctypes.c_float, "double": ctypes.c_double, "_Bool": ctypes.c_bool,
-         "ag_sample_counts": afterglow._SampleCounts, "ag_commit_counts": afterglow._CommitCounts}
+         "ag_sample_counts": _interface.SampleCounts, "ag_commit_counts": _interface.CommitCounts}
 
 def kind(text):
     """Of a parameter or result in C: pointer, or the ctypes type."""
@@ -64,10 +66,10 @@ for line in open(sys.argv[1]).read().splitlines():
     if line.startswith("function "):
         text = line[len("function "):]
         record[re.search(r"(ag_\w+)\(", text).group(1)] = text
-used = {name: own for name, own in vars(afterglow._library).items() if name.startswith("ag_")}
+used = {name: own for name, own in vars(_interface.library).items() if name.startswith("ag_")}
 wrong = [name for name, own in used.items() if name not in record or differ(own, record[name])]
 assert len(used) > 40 and not wrong, wrong
-some = afterglow._library.ag_rendering_continue
+some = _interface.library.ag_rendering_continue
 assert differ(some, "ag_status ag_rendering_continue(ag_rendering *rendering, size_t samples)")
 assert differ(some, "ag_status ag_rendering_continue(ag_rendering *rendering)")
 assert differ(some, "void ag_rendering_continue(ag_rendering *rendering, int samples)")
@@ -110,7 +112,7 @@ echo "ok: docstrings and type hints"
 # A checker of types reads the hints of the module as it is installed, and finds what is wrong.
 if command -v mypy >/dev/null; then
     mkdir -p typed/afterglow
-    cp "$root"/renderer/python/afterglow/{__init__.py,py.typed} typed/afterglow
+    cp "$root"/renderer/python/afterglow/{*.py,py.typed} typed/afterglow
     cat >right.py <<'END'
 import afterglow, numpy
 from numpy.typing import NDArray
@@ -361,6 +363,9 @@ with afterglow.Context() as context, context.load("scene.pbrt") as scene:
     with scene.rendering(**{**picture, "spp": 100000}) as rendering:
         refused(Enough, "", rendering.advance, 100000, stop_here)
     assert numpy.array_equal(scene.render(**picture), pixels)
+
+for threads in (-1, 1 << 32):
+    refused(ValueError, f"threads: {threads} is not in", afterglow.Context, threads)
 
 said = []
 with afterglow.Context(warn=said.append) as context, context.scene() as scene:
