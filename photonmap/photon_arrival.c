@@ -5,7 +5,7 @@
 
 /* The share of ways on by a surface's diffuse lobes that importons lead, where there are any. */
 static const float LED_SHARE = 0.5f;
-/* The same of a caustic map's, which come by other ways as well that no importon tells of. */
+/* The share in a caustic map, whose photons come by ways as well that no importon tells of. */
 static const float CAUSTIC_LED_SHARE = 0.2f;
 
 bool photon_arrival_meet(const scene *s, scene_ray *in_out_ray, uint64_t *in_out_cut, photon_arrival *out,

@@ -80,7 +80,8 @@ uint32_t photon_map_scratch_count(const photon_map *map);
 bool photon_map_is_behind_wall(const photon_map *map, const photon_block *blocks, vec3 position, vec3 normal,
                                uint32_t index, uint64_t *in_out_rays);
 
-/* The same, and whether something between the two ends a little above their surface: a door, or a wall with a gap. */
+/* Returns whether a surface lies between a surface point and a photon, as photon_map_is_behind_wall does, or something
+ * that ends a little above the surface of both: a door, or a wall with a gap. */
 bool photon_map_is_beyond_gap(const photon_map *map, const photon_block *blocks, vec3 position, vec3 normal,
                               uint32_t index, uint64_t *in_out_rays);
 
