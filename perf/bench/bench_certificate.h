@@ -8,7 +8,8 @@
 
 #include <stdbool.h>
 
-/* The build on which the bits depend, besides the benchmark's own scenes: short texts without a line's end. */
+/* The build on which the bits depend, besides the program's version and the benchmark's own scenes: short texts
+ * without a line's end. The sources are told, but not compared: most changes of theirs make no other bits. */
 typedef struct bench_build {
     char sources[40];  /* fingerprint of the sources of threads/, scene/, photonmap/ and renderer/, 32 hexadecimals */
     char compiler[64]; /* "gcc 12.2.0" */

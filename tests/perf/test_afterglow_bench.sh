@@ -9,7 +9,15 @@ program=$AFTERGLOW_BUILD_DIR/bin/afterglow-bench
 cd "$folder"
 
 # more threads than processors, too: the bits and counts of one thread
-"$program" --quick -q --threads 1,2,3,64 -o a.json -o a.html >line 2>told || fail "--quick ended with $?: $(<told)"
+"$program" --quick -q --threads 1,2,3,64 -o a.json -o a.html >line 2>told || {
+    code=$?
+    ! grep -q 'known to make other bits' told || fail "bench_known.c's row 'quick' is out of date: $(jq .certificate.hash a.json)"
+    fail "--quick ended with $code: $(<told)"
+}
+# the row of this build; a new version has a new one
+build=$(jq -r '.build | [.compiler, .embree, .libm, .isa, .maker] | join(", ")' a.json)
+[[ $build != "gcc 12.2.0, 3.13.5, glibc 2.36, avx2, AuthenticAMD" || $(jq -r .certificate.known_build a.json) == matches ]] ||
+    fail "bench_known.c has no row 'quick' of this version: $(jq .certificate.hash a.json)"
 [[ $(wc -l <line) == 1 ]] && grep -q '^| .* | quick | - | - | valid, [0-9a-f]\{8\} |$' line || fail "the line is: $(<line)"
 grep -q 'the quick size times nothing' told || fail "it does not say why there is no score: $(<told)"
 jq -e '.program == "afterglow-bench" and .format == 1 and .size == "quick" and .score_one == null and .score_best == null
