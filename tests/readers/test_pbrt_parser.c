@@ -179,6 +179,59 @@ static void attributes_are_brought_back(void **state)
     reading_destroy(&r);
 }
 
+/* Of many lines one of each name is in force, and the end of a block brings back what was in force before it. The work
+ * of a directive is that of the names: a list of all lines would take 10^10 steps for this file. */
+static void attributes_of_one_name_replace_each_other(void **state)
+{
+    (void)state;
+    enum { LINES = 200000, BLOCKS = 1000 };
+    char *text = malloc((size_t)LINES * 64 + (size_t)BLOCKS * 80);
+    assert_non_null(text);
+    char *end = text + sprintf(text, "WorldBegin\n");
+    for (int i = 0; i < LINES; i++)
+        end += sprintf(end, "Attribute \"shape\" \"float radius\" %d%s\n", i + 1, i % 2 ? " Shape \"sphere\"" : "");
+    for (int i = 0; i < BLOCKS; i++)
+        end += sprintf(end, "AttributeBegin Attribute \"shape\" \"float radius\" .5 \"float zmax\" .25\n");
+    end += sprintf(end, "Shape \"sphere\"\n");
+    for (int i = 0; i < BLOCKS; i++)
+        end += sprintf(end, "AttributeEnd ");
+    end += sprintf(end, "Shape \"sphere\" Attribute \"shape\" \"float radius\" 7 Shape \"sphere\"");
+    reading r = reading_create(NULL, text, (size_t)(end - text));
+    assert_int_equal(r.status, AG_OK);
+    const shape *shapes = r.scene->shapes;
+    assert_int_equal(r.scene->shape_count, LINES / 2 + 3);
+    for (int i = 0; i < LINES / 2; i++)
+        assert_near(shapes[i].as.quadric.radius, 2 * i + 2, 0);
+    assert_near(shapes[LINES / 2].as.quadric.radius, 0.5, 0);
+    assert_near(shapes[LINES / 2].as.quadric.z_max, 0.25, 0);
+    assert_near(shapes[LINES / 2 + 1].as.quadric.radius, LINES, 0);
+    assert_near(shapes[LINES / 2 + 1].as.quadric.z_max, LINES, 0);
+    assert_near(shapes[LINES / 2 + 2].as.quadric.radius, 7, 0);
+    reading_destroy(&r);
+    free(text);
+}
+
+static void attributes_of_many_names_are_an_error(void **state)
+{
+    (void)state;
+    enum { MOST = 1000 };
+    char *text = malloc((size_t)MOST * 64);
+    assert_non_null(text);
+    for (int count = MOST; count <= MOST + 1; count++) {
+        char *end = text + sprintf(text, "WorldBegin Attribute \"light\" \"float a\" 1\n");
+        for (int i = 1; i < count; i++)
+            end += sprintf(end, "Attribute \"shape\" \"float n%d\" 1\n", i);
+        end += sprintf(end, "Attribute \"shape\" \"float last\" 1 Shape \"sphere\"");
+        reading r = reading_create(NULL, text, (size_t)(end - text));
+        assert_int_equal(r.status, count == MOST ? AG_OK : AG_ERROR_SCENE);
+        if (count > MOST)
+            assert_non_null(strstr(r.said[AG_LOG_ERROR], "t:1002:19: error: more than 1000 attributes of different "
+                                                         "names for \"shape\""));
+        reading_destroy(&r);
+    }
+    free(text);
+}
+
 static void attributes_speak_to_what_follows(void **state)
 {
     (void)state;
@@ -332,6 +385,8 @@ int main(void)
         cmocka_unit_test(singular_transforms_leave_out_what_they_hold),
         cmocka_unit_test(attributes_are_brought_back),
         cmocka_unit_test(attributes_speak_to_what_follows),
+        cmocka_unit_test(attributes_of_one_name_replace_each_other),
+        cmocka_unit_test(attributes_of_many_names_are_an_error),
         cmocka_unit_test(colour_spaces_are_part_of_the_state),
         cmocka_unit_test(progress_is_told_and_cancelling_heeded),
         cmocka_unit_test(damaged_scenes_are_survived),

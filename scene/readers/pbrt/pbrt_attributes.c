@@ -21,23 +21,66 @@ static const struct {
     {"Texture", PBRT_TARGET_TEXTURE},
 };
 
-/* Each parameter is an attribute of its own, before those that were there. */
+static size_t find_in_force(const pbrt_attributes *of, const char *name)
+{
+    size_t i = 0;
+    while (i < of->count && strcmp(of->in_force[i]->item.name, name) != 0)
+        i++;
+    return i;
+}
+
+/* Puts one into force, in the place of another of its name, which the end of the block brings back if it is from
+ * outside of it. */
+static ag_status add_attribute(pbrt_parser *parser, const parameter *p, pbrt_target target, const char *name)
+{
+    pbrt_attributes *of = &parser->attributes_of[target];
+    const size_t place = find_in_force(of, p->name);
+    if (place == PBRT_MAX_PARAMETERS)
+        return pbrt_error(parser, p->where, strlen(parameter_type_name(p->type)) + strlen(p->name) + 3,
+                          "more than %d attributes of different names for \"%s\"", PBRT_MAX_PARAMETERS, name);
+    pbrt_attribute *added = calloc(1, sizeof *added);
+    if (!added || !parameter_copy(p, &added->item)) {
+        free(added);
+        return AG_ERROR_MEMORY;
+    }
+    added->item.may_be_unused = true;
+    added->item.used = &added->is_used;
+    added->target = name;
+    added->block = parser->saved_count;
+    added->older_of_all = parser->attributes;
+    parser->attributes = added;
+    if (place == of->count) {
+        of->count++;
+    } else {
+        pbrt_attribute *before = of->in_force[place];
+        added->outside = before->block == added->block ? before->outside : before;
+    }
+    of->in_force[place] = added;
+    return AG_OK;
+}
+
 static ag_status add_attributes(pbrt_parser *parser, const parameter_list *list, pbrt_target target, const char *name)
 {
     for (size_t i = 0; i < list->count; i++) {
-        pbrt_attribute *added = calloc(1, sizeof *added);
-        if (!added || !parameter_copy(&list->items[i], &added->item)) {
-            free(added);
-            return AG_ERROR_MEMORY;
-        }
-        added->item.may_be_unused = true;
-        added->item.used = &added->is_used;
-        added->target = name;
-        added->older = parser->state.attributes[target];
-        added->older_of_all = parser->attributes;
-        parser->state.attributes[target] = parser->attributes = added;
+        AG_TRY(add_attribute(parser, &list->items[i], target, name));
     }
     return AG_OK;
+}
+
+void pbrt_leave_attributes(pbrt_parser *parser)
+{
+    for (int target = 0; target < PBRT_TARGET_COUNT; target++) {
+        pbrt_attributes *of = &parser->attributes_of[target];
+        size_t kept = 0;
+        for (size_t i = 0; i < of->count; i++) {
+            pbrt_attribute *a = of->in_force[i];
+            if (a->block > parser->saved_count)
+                a = a->outside;
+            if (a)
+                of->in_force[kept++] = a;
+        }
+        of->count = kept;
+    }
 }
 
 ag_status pbrt_attribute_directive(pbrt_parser *parser, file_location where)
@@ -59,18 +102,23 @@ ag_status pbrt_attribute_directive(pbrt_parser *parser, file_location where)
 
 ag_status pbrt_append_attributes(pbrt_parser *parser, parameter_list *list)
 {
-    const pbrt_attribute *newest = NULL;
+    const pbrt_attributes *of = NULL;
     for (size_t i = 0; i < sizeof TARGETS / sizeof *TARGETS; i++)
         if (strcmp(list->directive, TARGETS[i].directive) == 0)
-            newest = parser->state.attributes[TARGETS[i].target];
-    for (const pbrt_attribute *a = newest; a; a = a->older) {
-        if (parameter_list_find(list, a->item.name))
+            of = &parser->attributes_of[TARGETS[i].target];
+    if (!of || of->count == 0)
+        return AG_OK;
+    const size_t said_count = list->count;
+    parameter *larger = realloc(list->items, (list->count + of->count) * sizeof *larger);
+    if (!larger)
+        return AG_ERROR_MEMORY;
+    list->items = larger;
+    const parameter_list said = {.items = larger, .count = said_count};
+    for (size_t i = 0; i < of->count; i++) {
+        const parameter *item = &of->in_force[i]->item;
+        if (parameter_list_find(&said, item->name))
             continue;
-        parameter *larger = realloc(list->items, (list->count + 1) * sizeof *larger);
-        if (!larger)
-            return AG_ERROR_MEMORY;
-        list->items = larger;
-        if (!parameter_copy(&a->item, &larger[list->count]))
+        if (!parameter_copy(item, &larger[list->count]))
             return AG_ERROR_MEMORY;
         list->count++;
     }

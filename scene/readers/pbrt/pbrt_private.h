@@ -25,7 +25,7 @@
 #define PBRT_NO_MEDIUM SIZE_MAX
 
 enum { PBRT_MAX_DEPTH = 32 };        /* of files that include one another */
-enum { PBRT_MAX_PARAMETERS = 1000 }; /* of one directive */
+enum { PBRT_MAX_PARAMETERS = 1000 }; /* of one directive, and of its attributes */
 /* Files that include others twice multiply: so many are read in all, and text_file_max_bytes of text. */
 enum { PBRT_MAX_INCLUDES = 100000 };
 
@@ -65,14 +65,22 @@ typedef enum pbrt_target {
     PBRT_TARGET_COUNT
 } pbrt_target;
 
-/* One parameter of an Attribute. The parser owns all; the graphics state says which are in force. */
+/* One parameter of an Attribute. The parser owns all. */
 typedef struct pbrt_attribute {
     parameter item;
-    struct pbrt_attribute *older;        /* another of its target, in force with it */
+    size_t block;                        /* so many blocks were open around it */
+    struct pbrt_attribute *outside;      /* that of its name which was in force before the block, or NULL */
     struct pbrt_attribute *older_of_all; /* for the owner */
     bool is_used;                        /* by any directive that followed */
     const char *target;                  /* "shape", ... */
 } pbrt_attribute;
+
+/* Those of one target that are in force: one of each name, so that a directive's work does not grow with the lines of
+ * the file before it. */
+typedef struct pbrt_attributes {
+    pbrt_attribute *in_force[PBRT_MAX_PARAMETERS];
+    size_t count;
+} pbrt_attributes;
 
 /* AreaLightSource: what the shapes that follow emit. */
 typedef struct pbrt_area_light {
@@ -99,8 +107,7 @@ typedef struct pbrt_state {
     bool has_no_surface;                  /* the material is known to be "interface" */
     size_t medium_inside, medium_outside; /* MediumInterface: of pbrt_parser.named_media, or PBRT_NO_MEDIUM */
     pbrt_area_light area_light;
-    color_space rgb_space;                         /* of rgb parameters */
-    pbrt_attribute *attributes[PBRT_TARGET_COUNT]; /* the newest of each, or NULL */
+    color_space rgb_space; /* of rgb parameters */
 } pbrt_state;
 
 typedef struct pbrt_saved_state {
@@ -197,6 +204,7 @@ typedef struct pbrt_parser {
     size_t picture_count;
     parameter_source source;    /* of the lists that are read */
     pbrt_attribute *attributes; /* all there have been, the newest first */
+    pbrt_attributes attributes_of[PBRT_TARGET_COUNT];
 
     parameter_list integrator, sampler, film, pixel_filter; /* the last of each; .name is NULL for none */
 
@@ -301,6 +309,8 @@ ag_status pbrt_add_string(parameter_list *list, const char *name, parameter_type
 
 /* pbrt_attributes.c */
 pbrt_handler pbrt_attribute_directive;
+/* Brings back, after a block has ended, those that were in force before it. */
+void pbrt_leave_attributes(pbrt_parser *parser);
 /* Adds those in force for the list's directive, less those that it says itself. Errors: AG_ERROR_MEMORY. */
 ag_status pbrt_append_attributes(pbrt_parser *parser, parameter_list *list);
 /* Tells, at the end, of each that no directive has used. */

@@ -50,6 +50,7 @@ ag_status pbrt_restore_state(pbrt_parser *parser, file_location where, const cha
                           saved->where.file, saved->where.line, saved->where.column);
     parser->state = saved->state;
     parser->saved_count--;
+    pbrt_leave_attributes(parser);
     return AG_OK;
 }
 
@@ -121,6 +122,7 @@ ag_status pbrt_end_import(pbrt_parser *parser, file_location end)
 {
     AG_TRY(pbrt_check_blocks(parser, end));
     parser->state = parser->saved[--parser->saved_count].state;
+    pbrt_leave_attributes(parser);
     pbrt_file *top = &parser->files[parser->file_count - 1];
     free(parser->coordinate_systems);
     name_table_reset(&parser->coordinate_system_names);
