@@ -107,6 +107,7 @@ ag_status rendering_settle(ag_context *context, const scene *s, const ag_render_
 /* Called after a pass, with its status: what it has rendered counts only where the map's file is still whole. */
 static ag_status check_map(ag_rendering *r, ag_status status)
 {
+    run_clear_break(&r->context->run);
     if (!r->maps || !r->maps->file.is_shared || (status != AG_OK && status != AG_PAUSED && status != AG_CANCELLED))
         return status;
     if (photon_file_is_intact(&r->maps->file)) {

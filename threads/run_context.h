@@ -12,7 +12,7 @@
 #include <pthread.h>
 
 /* A pause is heeded by the phase that allows it alone, and stays asked for until then. */
-typedef enum run_stop { RUN_CANCELLED = 1, RUN_PAUSE_WANTED = 2, RUN_PAUSE_ALLOWED = 4 } run_stop;
+typedef enum run_stop { RUN_CANCELLED = 1, RUN_PAUSE_WANTED = 2, RUN_PAUSE_ALLOWED = 4, RUN_IN_VAIN = 8 } run_stop;
 
 typedef struct run_context {
     thread_pool *pool;        /* borrowed */
@@ -35,6 +35,9 @@ void run_context_reset(run_context *run); /* releases what init took; pool and l
 static inline void run_cancel(run_context *run) { fetch_or_relaxed_u32(&run->stop, RUN_CANCELLED); }
 /* Must not be called while a phase works. */
 static inline void run_clear_cancel(run_context *run) { fetch_and_relaxed_u32(&run->stop, ~(uint32_t)RUN_CANCELLED); }
+/* Stops a phase, as run_cancel does, that works on what is no longer there; who ends it takes that back. */
+static inline void run_break_off(run_context *run) { fetch_or_relaxed_u32(&run->stop, RUN_IN_VAIN); }
+static inline void run_clear_break(run_context *run) { fetch_and_relaxed_u32(&run->stop, ~(uint32_t)RUN_IN_VAIN); }
 static inline void run_pause(run_context *run) { fetch_or_relaxed_u32(&run->stop, RUN_PAUSE_WANTED); }
 /* From this call on run_is_cancelled is true where a pause is wanted, so that all that stops for good also pauses. */
 static inline void run_allow_pause(run_context *run) { fetch_or_relaxed_u32(&run->stop, RUN_PAUSE_ALLOWED); }
@@ -45,7 +48,7 @@ static inline bool run_end_pause(run_context *run)
     bool was_paused = now & RUN_PAUSE_ALLOWED && now & RUN_PAUSE_WANTED;
     if (was_paused)
         fetch_and_relaxed_u32(&run->stop, ~(uint32_t)RUN_PAUSE_WANTED);
-    return was_paused && !(now & RUN_CANCELLED);
+    return was_paused && !(now & (RUN_CANCELLED | RUN_IN_VAIN));
 }
 static inline bool run_is_cancelled(const run_context *run)
 {
