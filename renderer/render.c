@@ -230,6 +230,8 @@ static ag_status look_from(ag_rendering *r, const float from[3], const float to[
             "a view makes no sense: from and to should differ, and up should not be along the way between them");
         return AG_ERROR_ARGUMENT;
     }
+    if (scene_check_camera(r->s, &moved, r->context->log) != AG_OK)
+        return AG_ERROR_ARGUMENT;
     r->seen = malloc(sizeof *r->seen);
     if (!r->seen)
         return AG_ERROR_MEMORY;

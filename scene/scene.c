@@ -322,11 +322,28 @@ static bool is_in_reach_of_instance(const affine *world_from_object, vec3 center
     return reach <= REACH_MAX;
 }
 
-/* Light from afar starts within twice the radius of the bounds; eyes stand anywhere. */
-static ag_status check_instances(const scene *s, log_sink *log)
+/* How far the eye gets from a point; INFINITY where it is out of reach. */
+static float find_eye_distance(const camera *c, vec3 from)
 {
-    const vec3 eye = transform_point(&s->camera.world_from_camera, (vec3){0.0f, 0.0f, 0.0f});
-    const float away = s->has_camera ? vec3_length(vec3_sub(eye, s->bounding_center)) : 0.0f;
+    float distance = 0.0f;
+    for (int k = 0; k < (c->is_moving ? 2 : 1); k++) {
+        const transform at = c->is_moving ? camera_transform_at(c, (float)k) : c->world_from_camera;
+        const vec3 eye = transform_point(&at, (vec3){0.0f, 0.0f, 0.0f});
+        if (!(vec3_max_abs(eye) <= REACH_MAX) || !vec3_is_finite(eye))
+            return INFINITY;
+        distance = fmaxf(distance, vec3_length(vec3_sub(eye, from)));
+    }
+    return distance;
+}
+
+ag_status scene_check_camera(const scene *s, const camera *c, log_sink *log)
+{
+    const float away = c && s->instance_count > 0 ? find_eye_distance(c, s->bounding_center) : 0.0f;
+    if (isinf(away)) {
+        log_message(log, AG_LOG_ERROR, "the scene has instances, and its camera lies beyond 1e18 units in world space");
+        return AG_ERROR_SCENE;
+    }
+    /* light from afar starts within twice the radius of the bounds */
     const float radius = fmaxf(2.0f * s->bounding_radius, away);
     for (uint32_t i = 0; i < s->instance_count; i++)
         for (uint32_t k = 0; k < s->instances[i].step_count; k++)
@@ -356,7 +373,7 @@ static ag_status find_bounds(scene *s, log_sink *log)
     }
     s->bounding_center = vec3_scale(vec3_add(s->bounds_min, s->bounds_max), 0.5f);
     s->bounding_radius = vec3_length(vec3_sub(s->bounds_max, s->bounding_center)) * 1.00001f;
-    AG_TRY(check_instances(s, log));
+    AG_TRY(scene_check_camera(s, s->has_camera ? &s->camera : NULL, log));
     return scene_find_detail(s, &s->detail_center, &s->detail_radius);
 }
 

@@ -151,8 +151,12 @@ ag_status scene_commit(scene *s, run_context *run, const char *isa);
 /* Undoes, after a failure with s->before, what scene_commit has changed in that scene. NULL is fine. */
 void scene_restore_before(const scene *s);
 
-/* Replaces the camera of a committed scene, which must not be rendered meanwhile; nothing else depends on the
- * camera. */
+/* Checks that rays of the camera, NULL for none, stay where they can be traced in the space of each instance;
+ * scene_commit does so for the scene's. Errors: AG_ERROR_SCENE, told. */
+ag_status scene_check_camera(const scene *s, const camera *c, log_sink *log);
+
+/* Replaces the camera of a committed scene, which must not be rendered meanwhile, by one that scene_check_camera
+ * has let pass; nothing else depends on the camera. */
 void scene_set_camera(scene *s, const camera *c);
 
 /* Returns whether any light that meets the shape is traced on, rather than gathered: see bsdf.h. */

@@ -150,6 +150,7 @@ static ag_status complete(scene_making *making, pbrt_builder *builder, scene *s)
     AG_TRY(s->defined ? AG_OK : AG_ERROR_MEMORY);
     AG_TRY(scene_complete(context, s));
     if (making->has_camera) {
+        AG_TRY(scene_check_camera(s, &making->later_camera, context->log));
         scene_set_camera(s, &making->later_camera);
         s->has_camera = true;
     }
@@ -462,7 +463,9 @@ static ag_status read_camera(ag_context *context, const ag_scene *made, const ag
     pbrt_builder_destroy(builder);
     scene_destroy(empty);
     const char *conflict = status == AG_OK ? find_conflict(made->s, out_camera) : NULL;
-    return conflict ? refuse(context->log, c, conflict) : status;
+    if (conflict)
+        return refuse(context->log, c, conflict);
+    return status == AG_OK ? scene_check_camera(made->s, out_camera, context->log) : status;
 }
 
 /* Sets the camera of a committed scene, which may come from a file. */

@@ -176,6 +176,40 @@ static void an_instance_has_its_body_and_its_lamps_or_neither(void **state)
     expect_same_picture(&d, &sound);
 }
 
+/* Rays from so far would leave the range in which they can be traced in an instance's space. */
+static void cameras_out_of_reach_are_refused(void **state)
+{
+    (void)state;
+    static const double FAR[16] = {1, 0, 0, 1e19, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+    static const double FLAT[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, .005, 0, 0, 0, 0, 1};
+    static const double DISTANT[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 1e16, 0, 0, 0, 1};
+    desk d;
+    ag_camera eye = ag_default_camera();
+    ag_instance instance = ag_default_instance();
+    begin(&d);
+    light_and_look(&d);
+    add_square(&d);
+    const ag_shape ball = make_ball("ball");
+    assert_int_equal(ag_scene_add_shape(d.made, &ball, NULL), AG_OK);
+    instance.object = "ball";
+    instance.world_from_object = FLAT;
+    assert_int_equal(ag_scene_add_instance(d.made, &instance, NULL), AG_OK);
+    assert_int_equal(ag_scene_commit(d.made), AG_OK);
+    eye.world_from_camera = FAR;
+    assert_int_equal(ag_scene_set_camera(d.made, &eye), AG_ERROR_SCENE);
+    expect_said(&d, "its camera lies beyond 1e18 units");
+    eye.world_from_camera = NULL;
+    eye.world_from_camera_end = FAR;
+    assert_int_equal(ag_scene_set_camera(d.made, &eye), AG_ERROR_SCENE);
+    eye.world_from_camera = DISTANT;
+    eye.world_from_camera_end = NULL;
+    assert_int_equal(ag_scene_set_camera(d.made, &eye), AG_ERROR_SCENE);
+    expect_said(&d, "an instance of object \"ball\" is so small");
+    eye.world_from_camera = NULL;
+    assert_int_equal(ag_scene_set_camera(d.made, &eye), AG_OK);
+    end(&d);
+}
+
 /* The last camera that was made counts, and no other. */
 static void cameras_that_failed_or_were_replaced_leave_no_trace(void **state)
 {
@@ -306,6 +340,7 @@ int main(void)
         cmocka_unit_test(a_medium_that_failed_can_be_made_again),
         cmocka_unit_test(shapes_and_instances_that_failed_leave_no_trace),
         cmocka_unit_test(an_instance_has_its_body_and_its_lamps_or_neither),
+        cmocka_unit_test(cameras_out_of_reach_are_refused),
         cmocka_unit_test(cameras_that_failed_or_were_replaced_leave_no_trace),
         cmocka_unit_test(transposed_matrices_are_refused),
         cmocka_unit_test(settings_out_of_range_are_named),

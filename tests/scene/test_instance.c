@@ -481,6 +481,9 @@ static void what_cannot_be_undone_is_refused(void **state)
         {"Translate 0 0 1e16 Camera \"perspective\" WorldBegin ObjectBegin \"a\" Shape \"sphere\" ObjectEnd "
          "Scale 1 1 .005 ObjectInstance \"a\"",
          "an instance of object \"a\" is so small"},
+        {"Translate 0 0 1e19 Camera \"perspective\" WorldBegin ObjectBegin \"a\" Shape \"sphere\" ObjectEnd "
+         "ObjectInstance \"a\"",
+         "its camera lies beyond 1e18 units in world space"},
     };
     test_run r;
     test_run_init(&r, 1);
