@@ -1,6 +1,7 @@
 /* distribution_2d.h: picks cells of a grid in proportion to weights: a row by the rows' sums, then a cell of the row.
  * Rests on: Pharr, Jakob, Humphreys, "Physically Based Rendering", 4th ed., 2023, appendix A.5 (inversion in two
- * steps). Neighbouring random numbers pick neighbouring cells, so samples that are well spread stay so. Threads:
+ * steps); Chen, Asau, "On Generating Random Variates from an Empirical Distribution", 1974 (a table of where searches
+ * begin). Neighbouring random numbers pick neighbouring cells, so samples that are well spread stay so. Threads:
  * read-only once created. */
 #ifndef AFTERGLOW_DISTRIBUTION_2D_H
 #define AFTERGLOW_DISTRIBUTION_2D_H
@@ -15,6 +16,11 @@ typedef struct distribution_2d {
     uint32_t width, height;
     float *row_cdf;  /* [height + 1], from 0 to 1; owned */
     float *cell_cdf; /* [height][width + 1], likewise, of each row; owned */
+    /* For equal parts of [0, 1), a power of two of them, the first row or cell that numbers there can pick; behind the
+     * last part the last row or cell; owned. */
+    uint32_t row_parts, cell_parts;
+    uint16_t *first_rows;  /* [row_parts + 1] */
+    uint16_t *first_cells; /* [height][cell_parts + 1] */
 } distribution_2d;
 
 /* A cell and a point in it, of [0,1)^2. */

@@ -57,6 +57,50 @@ static void cells_are_picked_by_weight(void **state)
     distribution_2d_reset(&d);
 }
 
+/* The first cell whose running sum is above u, found one by one; the last where none is. */
+static uint32_t found_one_by_one(const float *cdf, uint32_t count, float u)
+{
+    for (uint32_t i = 0; i < count; i++)
+        if (cdf[i + 1] > u)
+            return i;
+    return count - 1;
+}
+
+static void expect_same_pick(const distribution_2d *d, vec2 u)
+{
+    distribution_2d_sample at;
+    const uint32_t y = found_one_by_one(d->row_cdf, d->height, u.y);
+    assert_true(distribution_2d_pick(d, u, &at));
+    assert_int_equal(at.y, y);
+    assert_int_equal(at.x, found_one_by_one(d->cell_cdf + (size_t)y * (d->width + 1), d->width, u.x));
+}
+
+static void cells_are_those_that_a_walk_over_all_finds(void **state)
+{
+    (void)state;
+    static const uint32_t SIZES[][2] = {{1, 1}, {2, 1}, {1, 3}, {7, 5}, {64, 33}, {1000, 3}, {65535, 2}};
+    rng random = test_random(2);
+    for (size_t i = 0; i < sizeof SIZES / sizeof *SIZES; i++) {
+        const uint32_t width = SIZES[i][0], height = SIZES[i][1];
+        float *weights = malloc((size_t)width * height * sizeof *weights);
+        assert_non_null(weights);
+        for (size_t k = 0; k < (size_t)width * height; k++) /* most are 0, few are large */
+            weights[k] = rng_float(&random) < 0.6f ? 0.0f : powf(rng_float(&random), 8.0f);
+        weights[(size_t)width * height / 2] = 1.0f;
+        distribution_2d d;
+        assert_int_equal(distribution_2d_create(width, height, weights, &d), AG_OK);
+        for (int k = 0; k < 2000; k++)
+            expect_same_pick(&d, rng_vec2(&random));
+        for (uint32_t x = 0; x < width; x += 1 + width / 500) { /* at the sums themselves, and beside them */
+            const float sum = fminf(d.cell_cdf[x], 0x1.fffffep-1f);
+            expect_same_pick(&d, (vec2){sum, 0.0f});
+            expect_same_pick(&d, (vec2){fmaxf(nextafterf(sum, 0.0f), 0.0f), 0.0f});
+        }
+        distribution_2d_reset(&d);
+        free(weights);
+    }
+}
+
 /* --- the maps --- */
 
 /* A picture of noise, some of it black and one pixel bright. */
@@ -387,6 +431,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(cells_are_picked_by_weight),
+        cmocka_unit_test(cells_are_those_that_a_walk_over_all_finds),
         cmocka_unit_test(directions_are_those_of_pbrt),
         cmocka_unit_test(points_and_directions_round_trip),
         cmocka_unit_test(pixels_have_their_solid_angles),
