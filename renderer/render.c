@@ -81,6 +81,21 @@ static transport make_transport(const ag_context *context, const scene *s, const
     return t;
 }
 
+/* --- settings that are left open --- */
+
+/* Few samples do not show what many photons are for, and tracing these would be most of the work: in three interiors
+ * at a sample or four of 57,600 pixels, error times CPU time is least at one to four photons for each sample. */
+enum { PHOTONS_PER_SAMPLE = 2, PHOTONS_LEAST = 131072 };
+
+static uint64_t automatic_photon_count(const ag_render_settings *settings)
+{
+    if (settings->photon_map_file || settings->photon_paths > 0)
+        return AG_DEFAULT_PHOTONS_MOST;
+    const double samples =
+        (double)settings->width * (double)settings->height * (double)splitting_expected_samples(settings);
+    return (uint64_t)fmin(fmax(PHOTONS_PER_SAMPLE * samples, PHOTONS_LEAST), AG_DEFAULT_PHOTONS_MOST);
+}
+
 ag_status rendering_settle(ag_context *context, const scene *s, const ag_render_settings *wanted,
                            ag_render_settings *out_settings)
 {
@@ -88,6 +103,10 @@ ag_status rendering_settle(ag_context *context, const scene *s, const ag_render_
     *out_settings = *wanted;
     if (out_settings->photon_seed == AG_PHOTON_SEED_AUTOMATIC)
         out_settings->photon_seed = out_settings->seed;
+    if (out_settings->photon_count == AG_PHOTON_COUNT_AUTOMATIC)
+        out_settings->photon_count = automatic_photon_count(out_settings);
+    if (out_settings->caustic_photon_count == AG_PHOTON_COUNT_AUTOMATIC)
+        out_settings->caustic_photon_count = automatic_photon_count(out_settings) / 2;
     if (out_settings->photon_aim == AG_PHOTON_AIM_AUTOMATIC)
         out_settings->photon_aim =
             out_settings->photon_map_file || out_settings->photon_paths > 0 ? 0.0f : AG_DEFAULT_PHOTON_AIM;

@@ -171,14 +171,18 @@ static const setting_row ROWS[] = {
     {.text = {.name = "photons",
               .argument = "N",
               .section = "Light",
-              .help = "photons to store in the global map (default 1000000)",
-              .manual = "Photons to store in the global map. May be written as 2e6.",
+              .help = "photons to store in the global map (default: by the number of samples, 1000000 at most)",
+              .manual = "Photons to store in the global map. The default is two for each camera sample of the whole "
+                        "frame, from 131072 to 1000000; with *--noise* 64 samples a pixel are expected at most. With "
+                        "*--photon-map* or *--photon-paths* it is 1000000. May be written as 2e6.",
               .is_of_photon_map = true},
      FIELD(photon_count),
      .kind = SETTING_COUNT,
-     .initial = 1000000,
+     .initial = (double)AG_PHOTON_COUNT_AUTOMATIC,
      .least = 1,
      .most = UINT32_MAX - 1,
+     .has_automatic = true,
+     .automatic = (double)AG_PHOTON_COUNT_AUTOMATIC,
      .noun = "number of photons",
      .json = "settings.photon_count",
      .marks = SETTING_OF_PICTURE | SETTING_OF_PHOTONS},
@@ -202,13 +206,18 @@ static const setting_row ROWS[] = {
     {.text = {.name = "caustic-photons",
               .argument = "N",
               .section = "Light",
-              .help = "photons to store in the caustic map (default 500000, where there are mirrors or glass)",
-              .manual = "Photons to store in the caustic map.",
+              .help =
+                  "photons to store in the caustic map (default: half of that of --photons, where there are mirrors "
+                  "or glass)",
+              .manual = "Photons to store in the caustic map. The default is half of that of *--photons*; none are "
+                        "traced where nothing reflects or refracts light into bundles.",
               .is_of_photon_map = true},
      FIELD(caustic_photon_count),
      .kind = SETTING_COUNT,
-     .initial = 500000,
+     .initial = (double)AG_PHOTON_COUNT_AUTOMATIC,
      .most = UINT32_MAX - 1,
+     .has_automatic = true,
+     .automatic = (double)AG_PHOTON_COUNT_AUTOMATIC,
      .noun = "number of caustic photons",
      .json = "settings.caustic_photon_count",
      .marks = SETTING_OF_PICTURE | SETTING_OF_PHOTONS},
@@ -299,8 +308,8 @@ static const setting_row ROWS[] = {
               "where the picture asks for it, from 0 to 0.8; 0.8 is the default, and 0 with "
               "*--photon-map* and with *--photon-paths*. The others begin by power alone: the light is the same, and no photon is "
               "more than five times as bright as without. The pilot looks at the whole frame, so that "
-              "crops, tiles and other sizes of one shape have the same photons. A kept map that is aimed "
-              "serves its own view alone.",
+              "crops and tiles, and other sizes of one shape with the same *--photons*, have the same photons. "
+              "A kept map that is aimed serves its own view alone.",
           .is_of_photon_map = true},
      FIELD(photon_aim),
      .kind = SETTING_NUMBER,

@@ -107,7 +107,7 @@ static void describe_range(const setting_row *row, char *out, size_t size)
 {
     const char *floor = row->is_above_least ? "above" : "at least";
     char automatic[40] = "";
-    if (row->has_automatic)
+    if (row->has_automatic && row->kind == SETTING_NUMBER) /* another kind's is a constant that has a name */
         snprintf(automatic, sizeof automatic, ", or %.10g", row->automatic);
     if (row->kind == SETTING_WORD) {
         size_t used = (size_t)snprintf(out, size, "one of");

@@ -8,7 +8,8 @@
 /* The split is decided at FIRST_BARRIER samples, and each time that there are BARRIER_STEP times as many. */
 enum { FIRST_BARRIER = 4, BARRIER_STEP = 4 };
 
-/* With a level of noise AG_DEFAULT_GATHER_RAYS_PER_PIXEL is shared out among this many samples. */
+/* So many samples of a pixel are expected with a level of noise: AG_DEFAULT_GATHER_RAYS_PER_PIXEL is shared out among
+ * them. */
 enum { ADAPTIVE_SAMPLES = 64 };
 
 /* Without a choice there is a light sample for so many gather rays. With it there are many at first: blocks where few
@@ -53,15 +54,19 @@ bool splitting_goes_on(const ag_render_settings *settings, bool splits_samples)
            (settings->noise_level > 0.0f || settings->samples_per_pixel > FIRST_BARRIER);
 }
 
+int splitting_expected_samples(const ag_render_settings *settings)
+{
+    const int samples = settings->samples_per_pixel;
+    return settings->noise_level > 0.0f && samples > ADAPTIVE_SAMPLES ? ADAPTIVE_SAMPLES : samples;
+}
+
 split_counts splitting_first(const ag_render_settings *settings)
 {
     uint32_t rays = (uint32_t)settings->gather_samples;
     if (rays > 0)
         return (split_counts){.rays = rays,
                               .lights = (rays + GATHER_RAYS_PER_LIGHT_SAMPLE - 1) / GATHER_RAYS_PER_LIGHT_SAMPLE};
-    int samples = settings->samples_per_pixel;
-    if (settings->noise_level > 0.0f && samples > ADAPTIVE_SAMPLES)
-        samples = ADAPTIVE_SAMPLES;
+    const int samples = splitting_expected_samples(settings);
     if (samples > 0 && AG_DEFAULT_GATHER_RAYS_PER_PIXEL / samples > FIRST_RAYS_MIN)
         rays = (uint32_t)(AG_DEFAULT_GATHER_RAYS_PER_PIXEL / samples);
     return (split_counts){.rays = rays > 0 ? rays : FIRST_RAYS_MIN, .lights = FIRST_LIGHTS};

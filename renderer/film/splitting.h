@@ -43,6 +43,9 @@ bool splitting_goes_on(const ag_render_settings *settings, bool splits_samples);
 /* The counts of every sample where blocks do not choose, and of the first samples where they do. */
 split_counts splitting_first(const ag_render_settings *settings);
 
+/* How many samples a pixel is expected to get, at most: with a level of noise, few get as many as they may. */
+int splitting_expected_samples(const ag_render_settings *settings);
+
 /* The most rays of either kind that a sample may have. */
 split_counts splitting_most(const ag_render_settings *settings, bool splits_samples);
 

@@ -86,11 +86,41 @@ static void test_statistics_and_header(void **state)
     json_decref(stats);
 }
 
+static void expect_photons(json_int_t global, json_int_t caustic, const char *const *arguments)
+{
+    program_run run = program_execute(NULL, arguments);
+    expect_exit(&run, 0);
+    program_run_reset(&run);
+    json_t *stats = stats_read(in_folder("n.json"));
+    assert_int_equal(stats_integer(stats, "settings.photon_count"), global);
+    assert_int_equal(stats_integer(stats, "settings.caustic_photon_count"), caustic);
+    assert_int_equal(stats_integer(stats, "photons.stored_global"), global);
+    json_decref(stats);
+}
+
+#define EXPECT_PHOTONS(global, caustic, ...)                                                                           \
+    expect_photons(global, caustic,                                                                                    \
+                   ARGUMENTS("-q", "--gather-samples=1", "--stats=n.json", "-o", "n.exr", __VA_ARGS__,                 \
+                             PROGRAM_SCENES "sphere.pbrt"))
+
+/* The whole frame's camera samples decide, not those of a crop; a kept map is not of one picture alone. */
+static void test_photons_by_samples(void **state)
+{
+    (void)state;
+    EXPECT_PHOTONS(131072, 65536, "--spp=1", "--size=8x6");
+    EXPECT_PHOTONS(160000, 80000, "--spp=8", "--size=100x100", "--cropwindow=0,0.1,0,0.1");
+    EXPECT_PHOTONS(192000, 96000, "--noise=1", "--spp=1024", "--size=50x30", "--cropwindow=0,0.1,0,0.1");
+    EXPECT_PHOTONS(1000000, 500000, "--spp=1024", "--size=100x100", "--cropwindow=0,0.02,0,0.02");
+    EXPECT_PHOTONS(1000000, 500000, "--spp=1", "--size=8x6", "--photon-map=n.map");
+    EXPECT_PHOTONS(700, 65536, "--spp=1", "--size=8x6", "--photons=700");
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         TEST_IN_FOLDER(test_help_and_man_page),
         TEST_IN_FOLDER(test_statistics_and_header),
+        TEST_IN_FOLDER(test_photons_by_samples),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -63,14 +63,18 @@ typedef struct ag_render_settings {
                               path (to max_depth - 2 before a gather ray, max_depth - 1 before a caustic) and the
                               eye's part separately, so that there may be a few more behind mirrors and glass. */
 
-    uint64_t photon_count; /* photons to store in the global map, [1, 2^32 - 2] */
+    uint64_t photon_count; /* photons to store in the global map, [1, 2^32 - 2]. Default AG_PHOTON_COUNT_AUTOMATIC:
+                              two for each camera sample of the whole frame (at a level of noise, 64 samples a pixel
+                              are expected at most), from 131072 to AG_DEFAULT_PHOTONS_MOST; that most with a
+                              photon_map_file or photon_paths, whose photons are not of one picture alone */
     uint64_t photon_paths; /* light paths that the photons of the global map come from, [0, 10^15]; 0, the default: as
                               many as it takes to store photon_count photons. A fixed number is for the frames of an
                               animation: a path that meets nothing new then has the same photons in each frame, and
                               its irradiances can be kept (ag_context_take_frame). At most photon_count photons are
                               stored; a warning tells where that ends the tracing early. photon_aim and
                               gather_guiding are then 0 unless set */
-    uint64_t caustic_photon_count; /* photons to store in the caustic map, [0, 2^32 - 2] */
+    uint64_t caustic_photon_count; /* photons to store in the caustic map, [0, 2^32 - 2]. Default
+                                      AG_PHOTON_COUNT_AUTOMATIC: half of what that means for photon_count */
     int nearest;                   /* photons of an estimate, [1, 65536] */
     float radius;              /* largest radius of an estimate, scene units; 0: derived from the photons' density */
     float irradiance_fraction; /* share of the photons at which irradiance is kept, (0, 1]: gather rays look up the
@@ -166,6 +170,8 @@ AG_API ag_status ag_render_settings_set(ag_render_settings *settings, const char
 #define AG_DEFAULT_GATHER_RAYS_PER_PIXEL 256
 #define AG_DEFAULT_GATHER_GUIDING        0.5f
 #define AG_GATHER_GUIDING_AUTOMATIC      (-1.0f)
+#define AG_DEFAULT_PHOTONS_MOST          1000000
+#define AG_PHOTON_COUNT_AUTOMATIC        0x8000000000000000u
 #define AG_PHOTON_SEED_AUTOMATIC         0x8000000000000000u
 #define AG_DEFAULT_PHOTON_AIM            0.8f
 #define AG_PHOTON_AIM_AUTOMATIC          (-1.0f)
