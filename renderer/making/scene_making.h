@@ -1,5 +1,5 @@
 /* scene_making.h: the state of a scene that is made by calls, and of one that can be changed after its commit. Private
- * to scene_memory.c and scene_editing.c. Threads: as in afterglow.h. */
+ * to scene_memory.c, scene_commit.c and scene_editing.c. Threads: as in afterglow.h. */
 #ifndef AFTERGLOW_SCENE_MAKING_H
 #define AFTERGLOW_SCENE_MAKING_H
 
@@ -67,6 +67,11 @@ bool scene_making_is_open(const ag_scene *made, const char *function);
 
 /* Calls scene_call_make_mesh and counts the mesh. (scene_memory.c) */
 ag_status scene_making_mesh(scene_making *making, scene_call *c);
+
+/* Says why the camera cannot take the place of the scene's; NULL where it can. (scene_commit.c) */
+const char *scene_making_find_conflict(const scene *s, const camera *c);
+/* Notes the camera before the first one that is set among edits. (scene_commit.c) */
+void scene_making_keep_camera(ag_scene *made);
 
 /* Gives a new call its number, and pictures their version. Errors: AG_ERROR_MEMORY (there were 2^32 of them). */
 ag_status scene_making_number(scene_making *making, scene_call *c);

@@ -1,18 +1,15 @@
 /* scene_memory.c: scenes of the public interface that are made by calls.
  * Rests on: pbrt-v4's file format, whose directives the calls are. Flow: afterglow.h -> [here] -> scene_call ->
- * pbrt_builder -> scene. Threads: as in afterglow.h. */
+ * pbrt_builder -> scene_commit.c -> scene. Threads: as in afterglow.h. */
 #define _POSIX_C_SOURCE 200809L
 #include "atomics.h"
 #include "floating_point.h"
 #include "scene_load.h"
 #include "scene_making.h"
-#include "scene_overrides.h"
 #include "status.h"
 
 #include <stdlib.h>
 #include <string.h>
-
-static const char NAME[] = "scene from memory";
 
 /* The names of the public functions, for messages; each function counts its calls. */
 static const char *const FUNCTIONS[DEED_COUNT][CALL_KIND_COUNT] = {
@@ -123,133 +120,7 @@ ag_status ag_scene_create(ag_context *context, const ag_scene_settings *settings
     return status;
 }
 
-/* --- commit --- */
-
-/* Says why the camera cannot take the place of the scene's; NULL where it can. */
-static const char *find_conflict(const scene *s, const camera *c)
-{
-    const bool has_shutter = c->shutter_open == s->camera.shutter_open && c->shutter_close == s->camera.shutter_close;
-    return s->instance_step_count > s->instance_count && !has_shutter
-               ? "what moves was made for another shutter: \"shutteropen\" and \"shutterclose\" should stay"
-               : NULL;
-}
-
-/* Ends the building of a scene, and commits it. */
-static ag_status complete(scene_making *making, pbrt_builder *builder, scene *s)
-{
-    ag_context *context = making->context;
-    AG_TRY(pbrt_builder_finish(builder));
-    AG_TRY(scene_overrides_apply(&context->run, NAME, true, s));
-    const char *conflict = making->has_camera ? find_conflict(s, &making->later_camera) : NULL;
-    if (conflict) {
-        log_message(context->log, AG_LOG_ERROR, "the camera that was set after the commit: %s", conflict);
-        return AG_ERROR_ARGUMENT;
-    }
-    run_progress(&context->run, AG_PHASE_LOAD, 1.0);
-    s->defined = strdup("");
-    AG_TRY(s->defined ? AG_OK : AG_ERROR_MEMORY);
-    AG_TRY(scene_complete(context, s));
-    if (making->has_camera) {
-        AG_TRY(scene_check_camera(s, &making->later_camera, context->log));
-        scene_set_camera(s, &making->later_camera);
-        s->has_camera = true;
-    }
-    return AG_OK;
-}
-
-/* Makes the scene anew of the plan; what has not changed is taken from the scene before. */
-static ag_status run_plan(scene_making *making, scene *before, scene **out_scene)
-{
-    const color_config *colors;
-    ag_context *context = making->context;
-    AG_TRY(scene_making_check_arrays(making));
-    scene *s = *out_scene = scene_create();
-    AG_TRY(s ? context_color_config(context, &colors) : AG_ERROR_MEMORY);
-    s->space = context->working_space;
-    s->color_config = colors;
-    s->request = &making->request;
-    s->before = before;
-    pbrt_builder *builder = pbrt_builder_create(&context->run, s);
-    ag_status status = builder ? scene_plan_run(&making->plan, &context->run, builder) : AG_ERROR_MEMORY;
-    if (status == AG_OK)
-        status = complete(making, builder, s);
-    pbrt_builder_destroy(builder);
-    return status;
-}
-
-/* Notes the camera before the first one that is set among edits. */
-static void keep_camera(ag_scene *made)
-{
-    scene_making *making = made->making;
-    if (!making->is_edited || making->is_camera_edited)
-        return;
-    making->is_camera_edited = true;
-    making->committed_camera = (camera_state){made->s->camera, making->later_camera, made->s->has_camera,
-                                              made->s->is_camera_made_up, making->has_camera};
-}
-
-static void restore_camera(ag_scene *made)
-{
-    scene_making *making = made->making;
-    const camera_state *was = &making->committed_camera;
-    if (!making->is_camera_edited)
-        return;
-    scene_set_camera(made->s, &was->seen);
-    made->s->has_camera = was->has_camera;
-    made->s->is_camera_made_up = was->is_made_up;
-    making->later_camera = was->later;
-    making->has_camera = was->has_later;
-    making->is_camera_edited = false;
-}
-
-static void count_commit(scene_making *making, const scene *s)
-{
-    making->counts.commits++;
-    making->counts.trees_built += s->reuse.trees_built;
-    making->counts.trees_kept += s->reuse.trees_kept;
-    making->counts.pictures_read += s->reuse.pictures_read;
-    making->counts.pictures_kept += s->reuse.pictures_kept;
-}
-
-/* Commits a scene that can be changed. On failure the scene is what its last commit made, without the edits since. */
-static ag_status commit_plan(ag_scene *made)
-{
-    scene_making *making = made->making;
-    scene *before = made->s ? made->s : making->s, *s = NULL;
-    ag_status status = run_plan(making, before, &s);
-    if (status != AG_OK) {
-        scene_restore_before(s);
-        scene_destroy(s);
-        if (made->s && making->is_edited) {
-            scene_plan_reset(&making->plan);
-            making->plan = making->committed;
-            making->committed = (scene_plan){0};
-            making->is_edited = false;
-            making->has_stale = scene_plan_mark_stale(&making->plan);
-            restore_camera(made);
-            log_message(making->context->log, AG_LOG_ERROR, "the edits since the last commit are dropped");
-        }
-        return status;
-    }
-    s->before = NULL;
-    scene_destroy(before);
-    made->s = s;
-    making->s = NULL;
-    scene_plan_reset(&making->committed);
-    making->is_edited = making->is_camera_edited = making->has_stale = false;
-    count_commit(making, s);
-    return AG_OK;
-}
-
-/* Commits a scene that cannot be changed. */
-static ag_status commit_once(ag_scene *made)
-{
-    scene_making *making = made->making;
-    AG_TRY(complete(making, making->builder, making->s));
-    made->s = making->s;
-    making->s = NULL;
-    return AG_OK;
-}
+/* --- calls --- */
 
 bool scene_making_is_open(const ag_scene *made, const char *function)
 {
@@ -266,32 +137,6 @@ bool scene_making_is_open(const ag_scene *made, const char *function)
         log_message(made->context->log, AG_LOG_ERROR, "%s: the scene %s", function, wrong);
     return !wrong;
 }
-
-ag_status ag_scene_commit(ag_scene *made)
-{
-    if (!made || !scene_making_is_open(made, "ag_scene_commit"))
-        return AG_ERROR_ARGUMENT;
-    scene_making *making = made->making;
-    if (made->s && !making->is_edited)
-        return scene_making_check_arrays(making);
-    const unsigned callers_arithmetic = floating_point_enter();
-    made->inputs.scene = "";
-    making->context->run.inputs = &made->inputs;
-    run_progress(&making->context->run, AG_PHASE_LOAD, 0.0);
-    const ag_status status = making->is_editable ? commit_plan(made) : commit_once(made);
-    making->context->run.inputs = NULL;
-    made->inputs.scene = NULL;
-    pbrt_builder_destroy(making->builder);
-    making->builder = NULL;
-    if (status == AG_OK && !making->is_editable) {
-        scene_making_destroy(making);
-        made->making = NULL;
-    }
-    floating_point_leave(callers_arithmetic);
-    return status;
-}
-
-/* --- calls --- */
 
 ag_status call_work_begin(ag_scene *made, call_deed deed, call_kind kind, call_work *out_work)
 {
@@ -462,7 +307,7 @@ static ag_status read_camera(ag_context *context, const ag_scene *made, const ag
         *out_camera = empty->camera;
     pbrt_builder_destroy(builder);
     scene_destroy(empty);
-    const char *conflict = status == AG_OK ? find_conflict(made->s, out_camera) : NULL;
+    const char *conflict = status == AG_OK ? scene_making_find_conflict(made->s, out_camera) : NULL;
     if (conflict)
         return refuse(context->log, c, conflict);
     return status == AG_OK ? scene_check_camera(made->s, out_camera, context->log) : status;
@@ -479,7 +324,7 @@ static ag_status change_camera(ag_scene *made, const ag_camera *given)
     camera seen;
     const ag_status status = c ? read_camera(context, made, given, c, &seen) : AG_ERROR_MEMORY;
     if (status == AG_OK && made->making) {
-        keep_camera(made);
+        scene_making_keep_camera(made);
         made->making->later_camera = seen;
         made->making->has_camera = true;
     }

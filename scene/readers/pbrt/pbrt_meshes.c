@@ -2,7 +2,7 @@
  * Rests on the format's description, pbrt.org/fileformat-v4, "Shapes"; and for which side is outside on Pharr, Jakob,
  * Humphreys, "Physically Based Rendering", 4th ed., 2023, ch. 6.5.
  * Flow: pbrt_shapes, pbrt_patches, pbrt_ply, pbrt_subdivision -> [here] -> scene.shapes. Threads: one per scene. */
-#include "pbrt/pbrt_private.h"
+#include "pbrt/pbrt_meshes.h"
 
 #include <stdlib.h>
 #include <string.h>

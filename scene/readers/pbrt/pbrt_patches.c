@@ -2,7 +2,7 @@
  * Rests on: Pharr, Jakob, Humphreys, "Physically Based Rendering", 4th ed., 2023, ch. 6.6: the corners of a patch are
  * p00, p10, p01, p11, and its outside is where dp/du x dp/dv points.
  * Flow: pbrt_shapes -> [here] -> pbrt_add_mesh. Threads: one per scene. */
-#include "pbrt/pbrt_private.h"
+#include "pbrt/pbrt_meshes.h"
 
 #include <stdlib.h>
 #include <string.h>

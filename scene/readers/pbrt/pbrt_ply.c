@@ -2,7 +2,7 @@
  * Rests on the format's description, pbrt.org/fileformat-v4, "Shapes".
  * Flow: pbrt_shapes -> [here] -> ply_file -> pbrt_add_object_mesh. Threads: one per scene. */
 #include "model/ply_file.h"
-#include "pbrt/pbrt_private.h"
+#include "pbrt/pbrt_meshes.h"
 
 #include <stdio.h>
 #include <stdlib.h>

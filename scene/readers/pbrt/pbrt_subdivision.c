@@ -1,7 +1,7 @@
 /* pbrt_subdivision.c: Shape "loopsubdiv" of a pbrt-v4 scene.
  * Rests on the format's description, pbrt.org/fileformat-v4, "Shapes".
  * Flow: pbrt_shapes -> [here] -> loop_subdivision -> pbrt_add_mesh. Threads: one per scene. */
-#include "pbrt/pbrt_private.h"
+#include "pbrt/pbrt_meshes.h"
 #include "shape/loop_subdivision.h"
 
 #include <stdio.h>
