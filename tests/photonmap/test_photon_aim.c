@@ -2,6 +2,7 @@
  * there, the light is that of the closed form, and all is the same for any number of threads. Where light comes in by
  * the ground before a window, paths are split there, and no few photons hold much of the light.
  * Threads: those of the tracing. */
+/* ctest: long */
 #include "photon_aim.h"
 
 #include "fixtures/test_scene.h"

@@ -11,8 +11,7 @@ static const agreement_bounds UNBIASED = {0.0, 0.006, 0.04};
 static void test_box_with_blocks(void **state)
 {
     (void)state;
-    compare_integrators("box_with_blocks", "--spp=64", NULL, BOUNDS);
-    compare_integrators("box_with_blocks", "--spp=64", "--only=indirect", BOUNDS);
+    compare_parts("box_with_blocks", "--spp=64", BOUNDS);
 }
 
 /* With one scattering no photons take part, and both integrators sample lamps without bias, so no blur is allowed. */

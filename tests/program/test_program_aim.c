@@ -2,9 +2,10 @@
  * rendered, how large, with how many samples and threads; the same light as by power alone and as path tracing has; and
  * kept maps that say what they are aimed at.
  * Flow: tests of the whole program. Threads: the program's. */
-/* ctest: sanitize */
+/* ctest: sanitize long */
 #define _GNU_SOURCE
 #include "fixtures/program_agreement.h"
+#include "fixtures/sanitizer.h"
 
 #define AIMED    "--photon-aim=0.8"
 #define BY_POWER "--photon-aim=0"
@@ -108,6 +109,8 @@ static double share_asked_for(const char *scene, const char *aim)
 static void test_light_is_the_same_and_more_photons_are_of_use(void **state)
 {
     (void)state;
+    if (IS_SANITIZED)
+        skip(); /* statistics of what other tests run here */
     char scene[160];
     snprintf(scene, sizeof scene, "%s", room());
     const agreement_means path = agreement_render(scene, ARGUMENTS("--integrator=path", "--spp=256"));

@@ -1,9 +1,10 @@
 /* test_program_direct_guiding.c: direct light guided by what a pilot has seen: the irradiance below a window in a roof
  * is that of its form factor, with a fraction of the noise; and parts of a picture have the bits of the whole.
  * Flow: tests of the whole program. Threads: the program's. */
-/* ctest: sanitize */
+/* ctest: sanitize long */
 #define _GNU_SOURCE
 #include "fixtures/program_agreement.h"
+#include "fixtures/sanitizer.h"
 
 #define GUIDED   "--direct-guiding=0.8"
 #define UNGUIDED "--direct-guiding=0"
@@ -51,6 +52,8 @@ static void expect_form_factor(const char *what, mean_and_error m)
 static void test_form_factor_and_noise(void **state)
 {
     (void)state;
+    if (IS_SANITIZED)
+        skip(); /* statistics of what other tests run here */
     picture plain = RENDER(ROOF, "--integrator=path", DIRECT, UNGUIDED, "--spp=256");
     picture guided = RENDER(ROOF, "--integrator=path", DIRECT, GUIDED, "--spp=64");
     picture map = RENDER(ROOF, DIRECT, GUIDED, "--spp=64", "--gather-samples=8");
@@ -68,6 +71,8 @@ static void test_form_factor_and_noise(void **state)
 static void test_shares_of_lights(void **state)
 {
     (void)state;
+    if (IS_SANITIZED)
+        skip(); /* statistics of what other tests run here */
     char scene[160];
     snprintf(
         scene, sizeof scene, "%s",
@@ -125,6 +130,8 @@ static void test_parts_have_the_bits_of_the_whole(void **state)
 static void test_agreement(void **state)
 {
     (void)state;
+    if (IS_SANITIZED)
+        skip(); /* statistics of what other tests run here */
     char scene[160];
     snprintf(scene, sizeof scene, "%s", room());
     const agreement_means path = agreement_render(scene, ARGUMENTS("--integrator=path", "--spp=256", UNGUIDED));

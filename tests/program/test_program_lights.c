@@ -1,5 +1,6 @@
 /* test_program_lights.c: lights with pictures, windows, and many lamps in a room: photon map and path tracer show the
  * same. Flow: tests of the whole program. Threads: the program's. */
+/* ctest: long */
 #define _GNU_SOURCE
 #include "fixtures/program_agreement.h"
 
@@ -28,11 +29,8 @@ static void compare(const char *what, const char *scene, const char *samples, co
 /* All light, and indirect light alone. */
 static void compare_both(const char *what, const char *lights)
 {
-    char name[64];
-    const char *scene = room_with(lights);
-    compare(what, scene, "--spp=8", "--spp=32", NULL);
-    snprintf(name, sizeof name, "%s, indirect", what);
-    compare(name, scene, "--spp=8", "--spp=32", "--only=indirect");
+    compare_parts_by(what, room_with(lights), ARGUMENTS(AGREEMENT_MAP, "--spp=8"),
+                     ARGUMENTS("--integrator=path", "--spp=32"), BOUNDS);
 }
 
 /* ---- pictures ---- */
@@ -109,7 +107,7 @@ static void test_portal_adds_nothing(void **state)
         agreement_render(room_with("LightSource \"infinite\" \"string filename\" \"sky.exr\" " WINDOW),
                          ARGUMENTS("--integrator=path", "--spp=64"));
     agreement_means without = agreement_render(room_with("LightSource \"infinite\" \"string filename\" \"sky.exr\""),
-                                               ARGUMENTS("--integrator=path", "--spp=256"));
+                                               ARGUMENTS("--integrator=path", "--spp=96"));
     expect_agreement("with and without a portal", &with, &without, UNBIASED);
 }
 
@@ -190,7 +188,7 @@ static void test_many_lamps(void **state)
     (void)state;
     char text[8192];
     write_lamps(text, sizeof text);
-    compare("many lamps", room_with(text), "--spp=48", "--spp=128", NULL);
+    compare("many lamps", room_with(text), "--spp=16", "--spp=48", NULL);
 }
 
 /* A square of so many lamps side by side, in a file of its own. */
@@ -216,10 +214,10 @@ static const char *room_under_lamps(int side)
 static void test_a_thousand_lamps_are_one(void **state)
 {
     (void)state;
-    agreement_means one = agreement_render(room_under_lamps(1), ARGUMENTS("--integrator=path", "--spp=128"));
+    agreement_means one = agreement_render(room_under_lamps(1), ARGUMENTS("--integrator=path", "--spp=64"));
     const char *scene = room_under_lamps(32);
-    agreement_means paths = agreement_render(scene, ARGUMENTS("--integrator=path", "--spp=128"));
-    agreement_means map = agreement_render(scene, ARGUMENTS(AGREEMENT_MAP, "--spp=48"));
+    agreement_means paths = agreement_render(scene, ARGUMENTS("--integrator=path", "--spp=64"));
+    agreement_means map = agreement_render(scene, ARGUMENTS(AGREEMENT_MAP, "--spp=16"));
     expect_agreement("a thousand lamps, paths", &paths, &one, UNBIASED);
     expect_agreement("a thousand lamps", &map, &one, BOUNDS);
 }

@@ -1,6 +1,7 @@
 /* test_program_motion.c: what moves while the shutter is open: the part of the time that a point is covered, in closed
  * form; a camera that moves and a world that moves the other way; photon map and path tracer where what moves reflects.
  * Flow: tests of the whole program. Threads: the program's. */
+/* ctest: long */
 #define _GNU_SOURCE
 #include "fixtures/program_agreement.h"
 
@@ -148,8 +149,7 @@ static void test_moving_blocks(void **state)
 {
     (void)state;
     static const agreement_bounds BOUNDS = {AGREEMENT_BLUR, 0.007, 0.03};
-    compare_integrators("moving_blocks", "--spp=64", "--only=indirect", BOUNDS);
-    compare_integrators("moving_blocks", "--spp=64", NULL, BOUNDS);
+    compare_parts("moving_blocks", "--spp=64", BOUNDS);
 }
 
 /* Light counted for the wrong time would be six times off; light that is 8 % off makes this fail. */

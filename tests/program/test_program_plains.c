@@ -1,6 +1,7 @@
 /* test_program_plains.c: small things on a ground of kilometres under the sky: a house with a window, a glass ball.
  * Most photons would lie far away, and discs be as large as houses; the photon map must be as right as the path tracer
  * all the same. Flow: tests of the whole program. Threads: the program's. */
+/* ctest: long */
 #define _GNU_SOURCE
 #include "fixtures/program_agreement.h"
 
@@ -28,7 +29,8 @@ static void expect_house_alike(const char *what, const char *size, const char *g
              "AttributeBegin Translate 0 -.5 0 Rotate -90 1 0 0 Shape \"disk\" \"float radius\" %s "
              "AttributeEnd\n%s" HOUSE GRAY QUAD("1.2 1 .8 2 1 .8 2 1 1.6 1.2 1 1.6"),
              ground, size, walls);
-    compare_integrators_by(what, write_text("scene.pbrt", text), ARGUMENTS(AGREEMENT_MAP, "--photons=5e5", "--spp=24"),
+    compare_integrators_by(what, write_text("scene.pbrt", text),
+                           ARGUMENTS(AGREEMENT_MAP, "--photons=3e5", "--nearest=10", "--spp=24"),
                            ARGUMENTS("--integrator=path", "--spp=128"),
                            (agreement_bounds){2.0 * AGREEMENT_BLUR, 0.004, 0.03}); /* few photons are in the house */
 }
@@ -59,7 +61,7 @@ static void test_a_glass_ball(void **state)
                                  "LightSource \"infinite\" \"rgb L\" [.6 .8 1]\n" GRAY
                                  "AttributeBegin Rotate -90 1 0 0 Shape \"disk\" \"float radius\" 10000 AttributeEnd\n"
                                  "Material \"dielectric\" Translate 0 1.01 0 Shape \"sphere\"\n");
-    compare_integrators_by("a glass ball", scene, ARGUMENTS(AGREEMENT_MAP, "--spp=12"),
+    compare_integrators_by("a glass ball", scene, ARGUMENTS(AGREEMENT_MAP, "--photons=1e5", "--nearest=8", "--spp=12"),
                            ARGUMENTS("--integrator=path", "--spp=64"), (agreement_bounds){AGREEMENT_BLUR, 0.004, 0.03});
 }
 

@@ -3,20 +3,10 @@
  * irradiance; and in no run is an irradiance computed twice.
  *
  * Flow: tests of the whole program. Threads: the program's, up to more than there are processors. */
-/* ctest: sanitize */
+/* ctest: sanitize long */
 #define _GNU_SOURCE
 #include "fixtures/program_picture.h"
-
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-#define IS_SANITIZED 1
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
-#define IS_SANITIZED 1
-#endif
-#endif
-#ifndef IS_SANITIZED
-#define IS_SANITIZED 0
-#endif
+#include "fixtures/sanitizer.h"
 
 /* Sanitizers make the program about ten times slower, and once is enough for them. */
 enum { RUNS_EACH = IS_SANITIZED ? 1 : 2 };
@@ -210,7 +200,7 @@ static void test_cache_off(void **state)
 {
     (void)state;
     if (IS_SANITIZED)
-        return;
+        skip();
     enum { BLOCK = 8 };
     picture on = render_map(BOX, "--only=indirect", "--cache=on-demand", NULL);
     picture off = render_map(BOX, "--only=indirect", "--cache=off", NULL);

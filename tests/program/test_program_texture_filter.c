@@ -3,6 +3,7 @@
  * and the plane in a mirror; whatever the number of threads and the memory for textures, in parts and as a whole the
  * bits are the same; checkerboards are filtered, too.
  * Flow: tests of the whole program. Threads: the program's. */
+/* ctest: long */
 #define _GNU_SOURCE
 #include "fixtures/program_agreement.h"
 #include "fixtures/program_textures.h"
@@ -102,7 +103,7 @@ static void test_checkerboards(void **state)
         picture reference = render_path(scene, "--texture-filter=off", "--spp=1024"),
                 before = render_path(scene, "--texture-filter=off", "--spp=4"),
                 now = render_path(scene, "--texture-filter=on", "--spp=4"),
-                many = render_path(scene, "--texture-filter=on", "--spp=1024");
+                many = render_path(scene, "--texture-filter=on", "--spp=256");
         const double error_before = error_of(&before, &reference), error_now = error_of(&now, &reference),
                      error_many = error_of(&many, &reference);
         print_message("error %.5f unfiltered, %.5f filtered, %.6f of many\n", error_before, error_now, error_many);

@@ -27,7 +27,7 @@ static bool answer_much(int number, FILE *answer)
 static bool crash(int number, FILE *answer)
 {
     (void)answer;
-#ifdef UNDER_SANITIZER /* whose handlers these are */
+#if IS_SANITIZED /* whose handlers these are */
     if (number == SIGSEGV || number == SIGABRT)
         signal(number, SIG_DFL);
 #endif
@@ -173,7 +173,7 @@ static void signals_have_their_default_actions(void **state)
     sigaction(SIGTERM, &before, NULL);
 }
 
-#ifndef UNDER_SANITIZER
+#if !IS_SANITIZED
 static void memory_is_limited(void **state)
 {
     (void)state;
@@ -329,7 +329,7 @@ int main(int count, char **arguments)
         cmocka_unit_test(answers_come_back_whole),
         cmocka_unit_test(any_end_is_an_error),
         cmocka_unit_test(signals_have_their_default_actions),
-#ifndef UNDER_SANITIZER
+#if !IS_SANITIZED
         cmocka_unit_test(memory_is_limited),
 #endif
         cmocka_unit_test(cancelling_ends_it),

@@ -413,7 +413,7 @@ static void memory_is_not_taken_by_the_headers_word(void **state)
         "ply\nformat binary_big_endian 1.0\nelement junk 3\nproperty list uint double a\n" VERTEX(1)
             FACE(1) "end_header\n\377\377\377\377 and so on",
     };
-#ifndef UNDER_SANITIZER
+#if !IS_SANITIZED
     struct rlimit saved;
     assert_int_equal(getrlimit(RLIMIT_AS, &saved), 0);
     assert_int_equal(setrlimit(RLIMIT_AS, &(struct rlimit){(rlim_t)1 << 30, saved.rlim_max}), 0);
@@ -428,7 +428,7 @@ static void memory_is_not_taken_by_the_headers_word(void **state)
             if (!gz && i < 3)
                 assert_non_null(strstr(message, "the header promises 1000000000"));
         }
-#ifndef UNDER_SANITIZER
+#if !IS_SANITIZED
     assert_int_equal(setrlimit(RLIMIT_AS, &saved), 0);
 #endif
 }

@@ -4,16 +4,14 @@
 #define _GNU_SOURCE
 #include "fixtures/layers_fixture.h"
 #include "fixtures/pbrt_transcript.h"
+#include "fixtures/sanitizer.h"
 #include "fixtures/scene_desk.h"
 #include "fixtures/shared_folder.h"
 #include "image/image_reader.h"
 
 /* Where everything takes long, one in so many of the scenes that are said both ways is tested. */
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-enum { SCENE_STEP = 4 };
-#else
-enum { SCENE_STEP = 1 };
-#endif
+enum { SCENE_STEP = IS_SANITIZED ? 4 : 1 };
+
 static void expect_same_both_ways(const char *folder_of_file, const char *name)
 {
     desk d;

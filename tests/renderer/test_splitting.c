@@ -1,9 +1,11 @@
 /* test_splitting.c: how many gather rays and light samples blocks of pixels choose: the best numbers in closed form
  * where variances and costs are known; the expectation stays; the picture is the same for any number of threads,
  * however the work is cut into passes, and in crops; and the choice pays. Threads: the renderer's. */
+/* ctest: long */
 #define _GNU_SOURCE
 #include "film/film.h"
 #include "fixtures/layers_fixture.h"
+#include "fixtures/sanitizer.h"
 #include "math/rng.h"
 
 /* --- of samples made up --- */
@@ -197,6 +199,8 @@ static void add_skewed(ag_film *film, size_t pixel, rng *random)
 static void test_expectation(void **state)
 {
     (void)state;
+    if (IS_SANITIZED)
+        skip(); /* statistics of what test_best_numbers runs */
     enum { FILMS = 400, SAMPLES = 8 };
     const ag_render_settings settings = settings_of(0.0f, SAMPLES);
     double sum = 0.0, squares = 0.0;
@@ -320,6 +324,8 @@ static void test_crops(void **state)
 static void test_caustics_by_chance(void **state)
 {
     (void)state;
+    if (IS_SANITIZED)
+        skip(); /* statistics of what test_same_bits runs */
     enum { SEEDS = 16 };
     studio *s = open_room(1, 0.0f);
     s->settings.photon_seed = 7;

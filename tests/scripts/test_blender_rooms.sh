@@ -4,7 +4,7 @@
 # the material is not quite Blender's, 12 % for FBX, and 5 % for Collada where surfaces have no highlights, which Blender
 # does not write there. What a format does not say is named in a warning. Skipped where Blender (with numpy, for its glTF
 # exporter) is not installed.
-# ctest: blender
+# ctest: blender long
 set -euo pipefail
 # shellcheck source=tests/fixtures/shell_test.sh
 source "$(dirname "${BASH_SOURCE[0]}")/../fixtures/shell_test.sh"

@@ -6,6 +6,7 @@
 #include "atomics.h"
 #include "clock.h"
 #include "cpu_count.h"
+#include "fixtures/sanitizer.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -25,14 +26,6 @@
 #include <unistd.h>
 #if defined(__SSE__)
 #include <xmmintrin.h>
-#endif
-
-#if defined(__has_feature)
-#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
-#define HAS_SANITIZER 1
-#endif
-#elif defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-#define HAS_SANITIZER 1
 #endif
 
 enum { MOST_WORKERS = 64 };
@@ -269,7 +262,7 @@ static void test_names_and_signals(void **state)
 static void test_creation_fails_part_way(void **state)
 {
     (void)state;
-#if defined(HAS_SANITIZER)
+#if IS_SANITIZED
     skip(); /* sanitizers reserve address space themselves, and end the process when they get none */
 #else
     pid_t child = fork();
