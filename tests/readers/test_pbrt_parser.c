@@ -5,6 +5,7 @@
 #include "fixtures/shared_folder.h"
 
 #include "color/spectra.h"
+#include "pbrt/pbrt_private.h"
 
 /* A hint that is given has that value. */
 static void check_integer(integer_hint hint, int64_t value)
@@ -232,6 +233,89 @@ static void attributes_of_many_names_are_an_error(void **state)
     free(text);
 }
 
+/* Of an array that an Attribute gives there is one for all directives, however many they are, and the names in it are
+ * one as well. */
+static void attributes_share_their_arrays(void **state)
+{
+    (void)state;
+    enum { LISTS = 50, POINTS = 10000 };
+    char *text = malloc((size_t)POINTS * 6 + (size_t)LISTS * 20 + 200);
+    assert_non_null(text);
+    char *end = text + sprintf(text, "\"shape\" \"string s\" [ \"a\" \"b\" ] \"bool b\" true \"point3 P\" [ ");
+    for (int i = 0; i < POINTS; i++)
+        end += sprintf(end, "1 2 3 ");
+    end += sprintf(end, "]\n");
+    for (int i = 0; i < LISTS; i++)
+        end += sprintf(end, "Shape \"sphere\"\n");
+    const file_location start = {"t", 1, 1};
+    reading r;
+    run_context run;
+    reading_begin(&r, &run);
+    pbrt_parser *parser = pbrt_parser_create(&run, r.scene);
+    assert_non_null(parser);
+    assert_int_equal(pbrt_push_text(parser, "t", text, (size_t)(end - text)), AG_OK);
+    assert_int_equal(pbrt_attribute_directive(parser, start), AG_OK);
+    parameter_list lists[LISTS];
+    int copies = 0;
+    for (int i = 0; i < LISTS; i++) {
+        pbrt_token word;
+        assert_int_equal(pbrt_next(parser, &word), AG_OK);
+        assert_int_equal(pbrt_read_named_parameters(parser, "Shape", "a type", start, &lists[i]), AG_OK);
+        const parameter *p = parameter_list_find(&lists[i], "P"), *s = parameter_list_find(&lists[i], "s"),
+                        *b = parameter_list_find(&lists[i], "b"), *first = parameter_list_find(&lists[0], "P");
+        assert_true(p && s && b && p->count == 3 * POINTS && p->numbers[3 * POINTS - 1] == 3.0);
+        assert_true(strcmp(s->strings[1], "b") == 0 && b->bools[0]);
+        copies += i > 0 && p->numbers != first->numbers;
+        copies += i > 0 && s->strings != parameter_list_find(&lists[0], "s")->strings;
+        copies += i > 0 && b->bools != parameter_list_find(&lists[0], "b")->bools;
+    }
+    assert_int_equal(copies, 0);
+    for (int i = 0; i < LISTS; i++)
+        parameter_list_reset(&lists[i]);
+    pbrt_parser_destroy(parser);
+    reading_end(&run);
+    reading_destroy(&r);
+    free(text);
+}
+
+/* What pbrt-v3's words are read as is made of a directive's own values: the Attribute says the same to the next. */
+static void attributes_outlive_changes_of_their_values(void **state)
+{
+    (void)state;
+    static const char TEXT[] =
+        "WorldBegin Attribute \"light\" \"rgb I\" [ 1 2 3 ] \"rgb scale\" [ 2 3 4 ]\n"
+        "LightSource \"point\" LightSource \"point\" LightSource \"point\"\n"
+        "Attribute \"light\" \"float scale\" 2 \"blackbody I\" [ 5000 .5 ]\n"
+        "LightSource \"point\" LightSource \"point\"\n"
+        "Attribute \"medium\" \"string type\" \"heterogeneous\" \"float density\" [ 1 1 ] \"integer nx\" 2\n"
+        "MakeNamedMedium \"m\" MakeNamedMedium \"n\"\n"
+        "MakeNamedMaterial \"a\" \"string type\" \"diffuse\" MakeNamedMaterial \"b\" \"string type\" \"conductor\"\n"
+        "Attribute \"material\" \"string namedmaterial1\" \"a\" \"string namedmaterial2\" \"b\"\n"
+        "\"rgb amount\" [ .1 .2 .3 ]\n"
+        "Material \"mix\" Shape \"sphere\" Material \"mix\" Shape \"sphere\"";
+    reading r = reading_create(NULL, TEXT, strlen(TEXT));
+    assert_int_equal(r.status, AG_OK);
+    assert_int_equal(r.scene->light_count, 5);
+    for (int i = 0; i < 3; i++) {
+        const rgb color = r.scene->lights[i].as.point.intensity;
+        assert_near(color.g / color.r, 3, 1e-5);
+        assert_near(color.b / color.r, 6, 1e-5);
+        assert_memory_equal(&color, &r.scene->lights[0].as.point.intensity, sizeof color);
+    }
+    const rgb hot[2] = {r.scene->lights[3].as.point.intensity, r.scene->lights[4].as.point.intensity};
+    assert_true(hot[0].r > 0.0f);
+    assert_memory_equal(&hot[0], &hot[1], sizeof hot[0]);
+    assert_non_null(strstr(r.said[AG_LOG_WARNING], "\"uniformgrid\""));
+    for (size_t i = 0; i < 2; i++) {
+        const material *mix = &r.scene->materials[r.scene->shapes[i].material_index];
+        assert_int_equal(mix->kind, MATERIAL_MIX);
+        assert_near(mix->mix_amount, 0.2, 1e-6);
+        assert_int_equal(r.scene->materials[mix->mixed[0]].kind, MATERIAL_CONDUCTOR);
+        assert_int_equal(r.scene->materials[mix->mixed[1]].kind, MATERIAL_DIFFUSE);
+    }
+    reading_destroy(&r);
+}
+
 static void attributes_speak_to_what_follows(void **state)
 {
     (void)state;
@@ -384,6 +468,8 @@ int main(void)
         cmocka_unit_test(transforms_compose_as_in_pbrt),
         cmocka_unit_test(singular_transforms_leave_out_what_they_hold),
         cmocka_unit_test(attributes_are_brought_back),
+        cmocka_unit_test(attributes_share_their_arrays),
+        cmocka_unit_test(attributes_outlive_changes_of_their_values),
         cmocka_unit_test(attributes_speak_to_what_follows),
         cmocka_unit_test(attributes_of_one_name_replace_each_other),
         cmocka_unit_test(attributes_of_many_names_are_an_error),

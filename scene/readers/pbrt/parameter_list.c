@@ -1,5 +1,6 @@
 /* parameter_list.c: see parameter_list.h.
  * Threads: one at a time. */
+#define _POSIX_C_SOURCE 200809L
 #include "pbrt/parameter_list.h"
 #include "status.h"
 
@@ -18,12 +19,14 @@ const char *parameter_type_name(parameter_type type)
 
 void parameter_reset(parameter *p)
 {
-    if (p->strings)
-        for (size_t i = 0; i < p->count; i++)
-            free(p->strings[i]);
-    free(p->strings);
-    free(p->numbers);
-    free(p->bools);
+    if (!p->is_borrowed) {
+        if (p->strings)
+            for (size_t i = 0; i < p->count; i++)
+                free(p->strings[i]);
+        free(p->strings);
+        free(p->numbers);
+        free(p->bools);
+    }
     free(p->name);
     memset(p, 0, sizeof *p);
 }
@@ -54,6 +57,7 @@ bool parameter_copy(const parameter *p, parameter *out_copy)
 {
     bool is_good = true;
     *out_copy = *p;
+    out_copy->is_borrowed = false;
     out_copy->name = copy_values(p->name, strlen(p->name) + 1, &is_good);
     out_copy->numbers = copy_values(p->numbers, p->count * sizeof *p->numbers, &is_good);
     out_copy->bools = copy_values(p->bools, p->count, &is_good);
@@ -64,6 +68,28 @@ bool parameter_copy(const parameter *p, parameter *out_copy)
     if (!is_good)
         parameter_reset(out_copy);
     return is_good;
+}
+
+bool parameter_borrow(const parameter *p, parameter *out_parameter)
+{
+    *out_parameter = *p;
+    out_parameter->is_borrowed = true;
+    out_parameter->name = strdup(p->name);
+    if (!out_parameter->name)
+        parameter_reset(out_parameter);
+    return out_parameter->name != NULL;
+}
+
+ag_status parameter_own(parameter *p)
+{
+    parameter own;
+    if (!p->is_borrowed)
+        return AG_OK;
+    if (!parameter_copy(p, &own))
+        return AG_ERROR_MEMORY;
+    parameter_reset(p);
+    *p = own;
+    return AG_OK;
 }
 
 /* Tells the error with the line that the parameter is in; always returns AG_ERROR_SCENE. */

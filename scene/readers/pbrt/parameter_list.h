@@ -39,6 +39,7 @@ typedef struct parameter {
     double *numbers;     /* floats, integers, points, ...; NULL for strings and bools */
     char **strings;      /* strings, texture names, spectrum names */
     unsigned char *bools;
+    bool is_borrowed; /* numbers, strings and bools are another's, who outlives this one: not to be written to */
     bool looked_up;
     bool may_be_unused; /* it is for whom it may concern: an Attribute's */
     bool *used;         /* set by parameter_list_warn_unused where it was looked up; borrowed; NULL: nobody asks */
@@ -64,6 +65,10 @@ typedef struct parameter_list {
 void parameter_list_reset(parameter_list *list); /* frees what it holds; leaves it zeroed */
 /* A copy of all that it holds; false, and *out_copy zeroed, when out of memory. */
 bool parameter_copy(const parameter *p, parameter *out_copy);
+/* Makes one that borrows the values of another; false, and *out_parameter zeroed, when out of memory. */
+bool parameter_borrow(const parameter *p, parameter *out_parameter);
+/* Makes values that are borrowed its own, so that they can be written to. Errors: AG_ERROR_MEMORY. */
+ag_status parameter_own(parameter *p);
 void parameter_reset(parameter *p); /* frees what it holds; leaves it zeroed */
 
 /* Returns the parameter of a name, whatever its type; NULL where there is none. It is not marked as used. */

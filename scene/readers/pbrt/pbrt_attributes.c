@@ -29,9 +29,9 @@ static size_t find_in_force(const pbrt_attributes *of, const char *name)
     return i;
 }
 
-/* Puts one into force, in the place of another of its name, which the end of the block brings back if it is from
- * outside of it. */
-static ag_status add_attribute(pbrt_parser *parser, const parameter *p, pbrt_target target, const char *name)
+/* Takes a parameter and puts it into force, in the place of another of its name, which the end of the block brings back
+ * if it is from outside of it. */
+static ag_status add_attribute(pbrt_parser *parser, parameter *p, pbrt_target target, const char *name)
 {
     pbrt_attributes *of = &parser->attributes_of[target];
     const size_t place = find_in_force(of, p->name);
@@ -39,10 +39,10 @@ static ag_status add_attribute(pbrt_parser *parser, const parameter *p, pbrt_tar
         return pbrt_error(parser, p->where, strlen(parameter_type_name(p->type)) + strlen(p->name) + 3,
                           "more than %d attributes of different names for \"%s\"", PBRT_MAX_PARAMETERS, name);
     pbrt_attribute *added = calloc(1, sizeof *added);
-    if (!added || !parameter_copy(p, &added->item)) {
-        free(added);
+    if (!added)
         return AG_ERROR_MEMORY;
-    }
+    added->item = *p;
+    *p = (parameter){0};
     added->item.may_be_unused = true;
     added->item.used = &added->is_used;
     added->target = name;
@@ -59,11 +59,10 @@ static ag_status add_attribute(pbrt_parser *parser, const parameter *p, pbrt_tar
     return AG_OK;
 }
 
-static ag_status add_attributes(pbrt_parser *parser, const parameter_list *list, pbrt_target target, const char *name)
+static ag_status add_attributes(pbrt_parser *parser, parameter_list *list, pbrt_target target, const char *name)
 {
-    for (size_t i = 0; i < list->count; i++) {
+    for (size_t i = 0; i < list->count; i++)
         AG_TRY(add_attribute(parser, &list->items[i], target, name));
-    }
     return AG_OK;
 }
 
@@ -118,7 +117,7 @@ ag_status pbrt_append_attributes(pbrt_parser *parser, parameter_list *list)
         const parameter *item = &of->in_force[i]->item;
         if (parameter_list_find(&said, item->name))
             continue;
-        if (!parameter_copy(item, &larger[list->count]))
+        if (!parameter_borrow(item, &larger[list->count]))
             return AG_ERROR_MEMORY;
         list->count++;
     }

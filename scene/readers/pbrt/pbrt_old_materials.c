@@ -59,6 +59,7 @@ static ag_status upgrade_mix(pbrt_parser *parser, parameter_list *list)
         if (amount->numbers[0] != amount->numbers[1] || amount->numbers[1] != amount->numbers[2])
             log_at_once(parser->log, AG_LOG_WARNING, amount->where, "mix amount",
                         "\"rgb amount\" of \"mix\" is not supported: the mean of its components is used");
+        AG_TRY(parameter_own(amount));
         amount->type = PARAMETER_FLOAT;
         amount->numbers[0] = (amount->numbers[0] + amount->numbers[1] + amount->numbers[2]) / 3.0;
         amount->count = 1;
@@ -66,6 +67,8 @@ static ag_status upgrade_mix(pbrt_parser *parser, parameter_list *list)
     if (!first || !second || find(list, "materials") || first->type != PARAMETER_STRING || first->count != 1 ||
         second->type != PARAMETER_STRING || second->count != 1)
         return AG_OK;
+    AG_TRY(parameter_own(first));
+    AG_TRY(parameter_own(second));
     char **names = realloc(first->strings, 2 * sizeof *names);
     if (!names)
         return AG_ERROR_MEMORY;

@@ -183,8 +183,10 @@ static ag_status multiply_scale(parameter_list *list, double factor)
         scale->count = 1;
         scale->numbers[0] = 1.0;
     }
-    if (is_number(scale)) /* or its reader refuses it */
-        scale->numbers[0] *= factor;
+    if (!is_number(scale)) /* its reader refuses it */
+        return AG_OK;
+    AG_TRY(parameter_own(scale));
+    scale->numbers[0] *= factor;
     return AG_OK;
 }
 
@@ -204,6 +206,8 @@ static ag_status upgrade_light_scale(pbrt_parser *parser, parameter_list *list, 
         return pbrt_rename_parameter(list, "scale", color_name);
     if (color->type != PARAMETER_RGB || color->count != 3)
         return pbrt_refuse(parser, list, "scale", "\"rgb scale\" can be read beside \"rgb %s\" alone", color_name);
+    AG_TRY(parameter_own(color));
+    AG_TRY(parameter_own(scale));
     for (int i = 0; i < 3; i++)
         color->numbers[i] *= scale->numbers[i];
     scale->type = PARAMETER_FLOAT;
@@ -258,6 +262,7 @@ static ag_status upgrade_medium(pbrt_parser *parser, parameter_list *list)
     if (!type || type->type != PARAMETER_STRING || type->count != 1 || strcmp(type->strings[0], "heterogeneous") != 0)
         return AG_OK;
     tell(parser, list, type->where, "heterogeneous", "uniformgrid");
+    AG_TRY(parameter_own(type));
     return replace_text(&type->strings[0], "uniformgrid");
 }
 
