@@ -57,6 +57,66 @@ static void coated_diffuse_materials(void **state)
     assert_rgb(m.coat_albedo, .1, .2, 1, 1e-7);
 }
 
+/* A coat's values may be textures: one that is the same everywhere is its value, of the same bits as the number; of one
+ * that varies the default stands in, which is told. */
+static void coats_of_textures(void **state)
+{
+    (void)state;
+    static const char TEXTURES[] =
+        "WorldBegin Texture \"t\" \"float\" \"constant\" \"float value\" .3 Texture \"h\" \"float\" \"constant\" "
+        "\"float value\" -.4\nTexture \"a\" \"spectrum\" \"constant\" \"rgb value\" [ .8 .5 .2 ]\n"
+        "Texture \"board\" \"float\" \"checkerboard\" Texture \"c\" \"spectrum\" \"checkerboard\" Texture \"no\" "
+        "\"float\" \"constant\" \"float value\" -1\n";
+    static const char *const KINDS[] = {"coateddiffuse", "coatedconductor"};
+    char text[1024];
+    for (int i = 0; i < 2; i++) {
+        snprintf(text, sizeof text,
+                 "%s Material \"%s\" \"texture thickness\" \"t\" \"texture g\" \"h\" \"texture albedo\" \"a\" Shape "
+                 "\"sphere\" Material \"%s\" \"float thickness\" .3 \"float g\" -.4 \"rgb albedo\" [ .8 .5 .2 ] Shape "
+                 "\"sphere\" Material \"%s\" Shape \"sphere\"",
+                 TEXTURES, KINDS[i], KINDS[i], KINDS[i]);
+        reading r = reading_of(text);
+        const material *m[3];
+        for (int k = 0; k < 3; k++)
+            m[k] = &r.scene->materials[r.scene->shapes[k].material_index];
+        assert_true(m[0]->coat_thickness == .3f && m[0]->coat_g == -.4f);
+        assert_memory_equal(&m[0]->coat_albedo, &m[1]->coat_albedo, sizeof(rgb));
+        assert_true(m[0]->table && m[0]->table == m[1]->table); /* that of the same coat */
+        assert_true(m[0]->table != m[2]->table);
+        reading_destroy(&r);
+
+        snprintf(text, sizeof text,
+                 "%s Material \"%s\" \"texture thickness\" \"board\" \"texture g\" \"board\" \"texture albedo\" \"c\" "
+                 "Shape \"sphere\"",
+                 TEXTURES, KINDS[i]);
+        r = reading_create(NULL, text, strlen(text));
+        assert_int_equal(r.status, AG_OK);
+        assert_int_equal(r.count[AG_LOG_WARNING], 3);
+        static const char *const WORDS[] = {"a coat: a texture for \"thickness\" that varies is not supported: 0.01 ",
+                                            "\"g\" that varies is not supported: 0 stands in",
+                                            "\"albedo\" that varies is not supported: black stands in"};
+        for (int k = 0; k < 3; k++)
+            assert_non_null(strstr(r.said[AG_LOG_WARNING], WORDS[k]));
+        const material *of_board = &r.scene->materials[r.scene->shapes[0].material_index];
+        assert_true(of_board->coat_thickness == .01f && of_board->coat_g == 0 && rgb_is_black(of_board->coat_albedo));
+        reading_destroy(&r);
+
+        static const char *const WRONG[][2] = {
+            {"\"texture thickness\" \"no\"", "\"thickness\" should not be negative"},
+            {"\"texture g\" \"no\"", "\"g\" should be between -1 and 1"},
+            {"\"texture g\" \"a\"", "\"a\" is a spectrum texture, but \"g\" takes a float texture"},
+            {"\"texture albedo\" \"nobody\"", "no spectrum texture is named \"nobody\""}};
+        for (size_t k = 0; k < sizeof WRONG / sizeof *WRONG; k++) {
+            snprintf(text, sizeof text, "%sMaterial \"%s\" %s", TEXTURES, KINDS[i], WRONG[k][0]);
+            r = reading_create(NULL, text, strlen(text));
+            assert_int_equal(r.status, AG_ERROR_SCENE);
+            assert_non_null(strstr(r.said[AG_LOG_ERROR], WRONG[k][1]));
+            assert_non_null(strstr(r.said[AG_LOG_ERROR], "t:4:"));
+            reading_destroy(&r);
+        }
+    }
+}
+
 static void coated_conductors(void **state)
 {
     (void)state;
@@ -421,6 +481,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(coated_diffuse_materials),
         cmocka_unit_test(coated_conductors),
+        cmocka_unit_test(coats_of_textures),
         cmocka_unit_test(diffuse_transmission_materials),
         cmocka_unit_test(thin_dielectrics),
         cmocka_unit_test(mixes_are_of_named_materials),

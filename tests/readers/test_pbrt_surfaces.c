@@ -370,10 +370,10 @@ static void hair_is_colored_by_one_of_its_words(void **state)
     refuses("Material \"hair\" \"float eta\" .9", "\"eta\" of \"hair\" should be above 1");
     refuses("Material \"hair\" \"rgb sigma_a\" [ -1 0 0 ]", "\"rgb sigma_a\" has a negative component");
     m = warned_material(FLOATS "Material \"hair\" \"texture beta_m\" \"f\"",
-                        "material \"hair\": a texture for \"beta_m\" is not supported: 0.3 stands in\n");
+                        "material \"hair\": a texture for \"beta_m\" that varies is not supported: 0.3 stands in\n");
     assert_near(m.hair_beta_m, .3, 1e-6);
     m = warned_material(FLOATS "Material \"hair\" \"texture eumelanin\" \"f\"",
-                        "material \"hair\": a texture for \"eumelanin\" is not supported: 1.3 stands in\n");
+                        "material \"hair\": a texture for \"eumelanin\" that varies is not supported: 1.3 stands in\n");
     assert_rgb(m.hair_sigma_a, 1.3 * .419, 1.3 * .697, 1.3 * 1.37, 1e-5);
 }
 

@@ -124,17 +124,56 @@ static ag_status read_thin_dielectric(pbrt_parser *parser, parameter_list *list,
     return read_index(parser, list, "eta", &m->ior);
 }
 
+/* Tells of a texture for what may vary over the format's surfaces, but not over ours. */
+static void tell_texture(pbrt_parser *parser, const parameter_list *list, const char *of, const char *name,
+                         const char *stand_in)
+{
+    char key[96];
+    snprintf(key, sizeof key, "texture:%s:%s", of, name);
+    log_at_once(parser->log, AG_LOG_WARNING, list->where, key,
+                "%s: a texture for \"%s\" that varies is not supported: %s stands in", of, name, stand_in);
+}
+
+/* A number, or a texture of one: where that varies, `otherwise`. of: whose it is, for the message. */
+static ag_status read_constant(pbrt_parser *parser, parameter_list *list, const char *of, const char *name,
+                               float otherwise, float *value)
+{
+    char number[32];
+    uint32_t texture_index = SCENE_NO_TEXTURE;
+    AG_TRY(pbrt_get_float_texture(parser, list, name, value, &texture_index));
+    if (texture_index == SCENE_NO_TEXTURE)
+        return AG_OK;
+    *value = otherwise;
+    snprintf(number, sizeof number, "%g", (double)otherwise);
+    tell_texture(parser, list, of, name, number);
+    return AG_OK;
+}
+
+/* As read_constant. */
+static ag_status read_constant_color(pbrt_parser *parser, parameter_list *list, const char *of, const char *name,
+                                     rgb otherwise, const char *stand_in, rgb *value)
+{
+    uint32_t texture_index = SCENE_NO_TEXTURE;
+    AG_TRY(pbrt_get_rgb_texture(parser, list, name, value, &texture_index));
+    if (texture_index == SCENE_NO_TEXTURE)
+        return AG_OK;
+    *value = otherwise;
+    tell_texture(parser, list, of, name, stand_in);
+    return AG_OK;
+}
+
 /* Of pbrt's random walk in a coat ours keeps what it comes to. Its stuff absorbs even where its albedo is 0, and the
  * walk ends after "maxdepth" steps: both darken. "nsamples" decides pbrt's noise alone. */
 static ag_status read_coat_walk(pbrt_parser *parser, parameter_list *list, material *m)
 {
+    static const char COAT[] = "a coat";
     m->coat_thickness = 0.01f;
     int64_t depth = 10, samples = 1;
-    AG_TRY(parameter_get_float(list, parser->log, "thickness", &m->coat_thickness));
-    AG_TRY(parameter_get_float(list, parser->log, "g", &m->coat_g));
+    AG_TRY(read_constant(parser, list, COAT, "thickness", m->coat_thickness, &m->coat_thickness));
+    AG_TRY(read_constant(parser, list, COAT, "g", m->coat_g, &m->coat_g));
     AG_TRY(parameter_get_int(list, parser->log, "maxdepth", &depth));
     AG_TRY(parameter_get_int(list, parser->log, "nsamples", &samples));
-    AG_TRY(parameter_get_rgb(list, parser->log, "albedo", &m->coat_albedo));
+    AG_TRY(read_constant_color(parser, list, COAT, "albedo", m->coat_albedo, "black", &m->coat_albedo));
     if (m->coat_thickness < 0.0f)
         return pbrt_refuse(parser, list, "thickness", "\"thickness\" should not be negative");
     if (depth < 1 || depth > 1000)
@@ -248,24 +287,11 @@ static rgb hair_absorption(float eumelanin, float pheomelanin)
     return rgb_make(0.419f * e + 0.187f * p, 0.697f * e + 0.4f * p, 1.37f * e + 1.05f * p);
 }
 
-/* A number that may vary over the format's surfaces, but not over ours: then `otherwise`. */
-static ag_status read_constant(pbrt_parser *parser, parameter_list *list, const char *name, float otherwise,
-                               float *value)
-{
-    uint32_t texture_index = SCENE_NO_TEXTURE;
-    AG_TRY(pbrt_get_float_texture(parser, list, name, value, &texture_index));
-    if (texture_index == SCENE_NO_TEXTURE)
-        return AG_OK;
-    *value = otherwise;
-    log_at_once(parser->log, AG_LOG_WARNING, list->where, name,
-                "material \"hair\": a texture for \"%s\" is not supported: %g stands in", name, (double)otherwise);
-    return AG_OK;
-}
+static const char HAIR[] = "material \"hair\"";
 
 static ag_status read_hair_color(pbrt_parser *parser, parameter_list *list, material *m)
 {
     const char *color = parameter_list_find(list, "reflectance") ? "reflectance" : "color";
-    uint32_t texture_index = SCENE_NO_TEXTURE;
     if (!parameter_list_find(list, "sigma_a") && parameter_list_find(list, color)) {
         AG_TRY(pbrt_get_rgb_texture(parser, list, color, &m->reflectance, &m->reflectance_texture));
         m->hair_sigma_a = hair_absorption_from_reflectance(m->reflectance, m->hair_beta_n);
@@ -275,27 +301,21 @@ static ag_status read_hair_color(pbrt_parser *parser, parameter_list *list, mate
     float eumelanin = 0.0f, pheomelanin = 0.0f;
     if (!parameter_list_find(list, "eumelanin") && !parameter_list_find(list, "pheomelanin"))
         eumelanin = brown;
-    AG_TRY(read_constant(parser, list, "eumelanin", brown, &eumelanin));
-    AG_TRY(read_constant(parser, list, "pheomelanin", brown, &pheomelanin));
+    AG_TRY(read_constant(parser, list, HAIR, "eumelanin", brown, &eumelanin));
+    AG_TRY(read_constant(parser, list, HAIR, "pheomelanin", brown, &pheomelanin));
     const rgb melanin = working_space_light(&parser->scene->space, hair_absorption(eumelanin, pheomelanin));
     m->hair_sigma_a = melanin;
-    AG_TRY(pbrt_get_rgb_texture(parser, list, "sigma_a", &m->hair_sigma_a, &texture_index));
-    if (texture_index != SCENE_NO_TEXTURE) {
-        m->hair_sigma_a = melanin;
-        log_at_once(parser->log, AG_LOG_WARNING, list->where, "sigma_a",
-                    "material \"hair\": a texture for \"sigma_a\" is not supported: brown stands in");
-    }
-    return AG_OK;
+    return read_constant_color(parser, list, HAIR, "sigma_a", melanin, "brown", &m->hair_sigma_a);
 }
 
 static ag_status read_hair(pbrt_parser *parser, parameter_list *list, material *m)
 {
     static const char *const COLORS[] = {"sigma_a", "reflectance", "color", "eumelanin", "pheomelanin"};
     m->ior = 1.55f;
-    AG_TRY(read_constant(parser, list, "eta", m->ior, &m->ior));
-    AG_TRY(read_constant(parser, list, "beta_m", m->hair_beta_m, &m->hair_beta_m));
-    AG_TRY(read_constant(parser, list, "beta_n", m->hair_beta_n, &m->hair_beta_n));
-    AG_TRY(read_constant(parser, list, "alpha", m->hair_tilt_degrees, &m->hair_tilt_degrees));
+    AG_TRY(read_constant(parser, list, HAIR, "eta", m->ior, &m->ior));
+    AG_TRY(read_constant(parser, list, HAIR, "beta_m", m->hair_beta_m, &m->hair_beta_m));
+    AG_TRY(read_constant(parser, list, HAIR, "beta_n", m->hair_beta_n, &m->hair_beta_n));
+    AG_TRY(read_constant(parser, list, HAIR, "alpha", m->hair_tilt_degrees, &m->hair_tilt_degrees));
     if (!(m->ior > 1.0f))
         return pbrt_refuse(parser, list, "eta", "\"eta\" of \"hair\" should be above 1");
     for (int i = 0; i < 2; i++) {
