@@ -11,7 +11,7 @@ source "$(dirname "${BASH_SOURCE[0]}")/../fixtures/shell_test.sh"
 need blender
 cd "$folder"
 
-if ! HOME=$folder timeout 400 blender -b --factory-startup -P "$root/tests/fixtures/blender_rooms.py" -- "$folder" \
+if ! HOME=$folder timeout 1000 blender -b --factory-startup -P "$root/tests/fixtures/blender_rooms.py" -- "$folder" \
     >blender.log 2>&1 || [[ ! -s world.cycles.exr || ! -s world.obj ]]; then
     if grep -q "No module named 'numpy'\|has no attribute 'collada_export'\|could not be found" blender.log; then
         skip "this blender lacks an exporter: $(grep -m 1 Error blender.log)"
