@@ -126,10 +126,10 @@ ag_status rendering_settle(ag_context *context, const scene *s, const ag_render_
 /* Called after a pass, with its status: what it has rendered counts only where the map's file is still whole. */
 static ag_status check_map(ag_rendering *r, ag_status status)
 {
-    run_clear_break(&r->context->run);
+    const bool was_broken_off = run_end_break(&r->context->run); /* by a look that may have another answer now */
     if (!r->maps || !r->maps->file.is_shared || (status != AG_OK && status != AG_PAUSED && status != AG_CANCELLED))
         return status;
-    if (photon_file_is_intact(&r->maps->file)) {
+    if (!was_broken_off && photon_file_is_intact(&r->maps->file)) {
         ag_status kept = film_copy_take(r->film, &r->kept);
         return kept == AG_OK ? status : kept;
     }

@@ -35,9 +35,13 @@ void run_context_reset(run_context *run); /* releases what init took; pool and l
 static inline void run_cancel(run_context *run) { fetch_or_relaxed_u32(&run->stop, RUN_CANCELLED); }
 /* Must not be called while a phase works. */
 static inline void run_clear_cancel(run_context *run) { fetch_and_relaxed_u32(&run->stop, ~(uint32_t)RUN_CANCELLED); }
-/* Stops a phase, as run_cancel does, that works on what is no longer there; who ends it takes that back. */
+/* Stops a phase, as run_cancel does, that works on what is no longer there. */
 static inline void run_break_off(run_context *run) { fetch_or_relaxed_u32(&run->stop, RUN_IN_VAIN); }
-static inline void run_clear_break(run_context *run) { fetch_and_relaxed_u32(&run->stop, ~(uint32_t)RUN_IN_VAIN); }
+/* Takes that back. Returns whether the phase was broken off. */
+static inline bool run_end_break(run_context *run)
+{
+    return fetch_and_relaxed_u32(&run->stop, ~(uint32_t)RUN_IN_VAIN) & RUN_IN_VAIN;
+}
 static inline void run_pause(run_context *run) { fetch_or_relaxed_u32(&run->stop, RUN_PAUSE_WANTED); }
 /* From this call on run_is_cancelled is true where a pause is wanted, so that all that stops for good also pauses. */
 static inline void run_allow_pause(run_context *run) { fetch_or_relaxed_u32(&run->stop, RUN_PAUSE_ALLOWED); }

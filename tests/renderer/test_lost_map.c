@@ -1,6 +1,8 @@
-/* test_lost_map.c: a photon map's file is cut short or overwritten within a pass: the pass is broken off, the film is
- * that of the last pass that saw the file whole, and the context works on. Threads: those of the renderings. */
+/* test_lost_map.c: a photon map's file is cut short or overwritten within a pass, or one look at it fails: the pass is
+ * broken off, the film is that of the last pass that saw the file whole, and the context works on. Threads: those of
+ * the renderings. */
 #define _GNU_SOURCE
+#include "context.h"
 #include "fixtures/layers_fixture.h"
 
 #include <fcntl.h>
@@ -8,9 +10,13 @@
 
 enum { SIZE = 24, VALUES = 3 * SIZE * SIZE, ENDLESS = 1000000 }; /* so many samples take half an hour */
 
+typedef enum loss { LOSS_CUT, LOSS_OVERWRITTEN, LOSS_OF_ONE_LOOK, LOSS_KINDS } loss;
+
 typedef struct work {
     char map[160];
-    bool is_cut, is_armed, is_done;
+    ag_context *context;
+    loss kind;
+    bool is_armed, is_done;
     char said[512];
 } work;
 
@@ -27,7 +33,11 @@ static void watch(void *user, ag_phase phase, double fraction)
     if (!w->is_armed || w->is_done || phase != AG_PHASE_RENDER || fraction <= 1.0 / ENDLESS)
         return;
     w->is_done = true;
-    if (w->is_cut) {
+    if (w->kind == LOSS_OF_ONE_LOOK) {
+        run_break_off(&w->context->run);
+        return;
+    }
+    if (w->kind == LOSS_CUT) {
         if (truncate(w->map, 0) != 0)
             abort();
         return;
@@ -41,12 +51,12 @@ static void watch(void *user, ag_phase phase, double fraction)
 static void a_pass_is_broken_off(void **state)
 {
     (void)state;
-    for (int k = 0; k < 2; k++) {
-        work w = {.is_cut = k == 0};
+    for (int k = 0; k < LOSS_KINDS; k++) {
+        work w = {.kind = (loss)k};
         snprintf(w.map, sizeof w.map, "%s", in_folder("lost.map"));
         ag_context_settings made = ag_default_context_settings();
         ag_context *context;
-        ag_scene *scene;
+        ag_scene *loaded;
         ag_rendering *rendering;
         ag_render_settings settings;
         float before[VALUES];
@@ -56,14 +66,15 @@ static void a_pass_is_broken_off(void **state)
         made.progress = watch;
         made.user = &w;
         assert_int_equal(ag_context_create(&made, &context), AG_OK);
-        assert_int_equal(ag_scene_load(context, LAYERS_SCENES "box_with_blocks.pbrt", &scene), AG_OK);
-        assert_int_equal(ag_render_settings_from_scene(context, scene, &settings), AG_OK);
+        w.context = context;
+        assert_int_equal(ag_scene_load(context, LAYERS_SCENES "box_with_blocks.pbrt", &loaded), AG_OK);
+        assert_int_equal(ag_render_settings_from_scene(context, loaded, &settings), AG_OK);
         settings.width = settings.height = SIZE;
         settings.samples_per_pixel = ENDLESS;
         settings.photon_count = 3000;
         settings.noise_level = 0.0f;
         settings.photon_map_file = w.map;
-        assert_int_equal(ag_rendering_create(context, scene, &settings, &rendering), AG_OK);
+        assert_int_equal(ag_rendering_create(context, loaded, &settings, &rendering), AG_OK);
         assert_int_equal(ag_rendering_continue(rendering, 1), AG_OK);
         memcpy(before, ag_film_pixels(ag_rendering_film(rendering), &width, &height), sizeof before);
         w.is_armed = true;
@@ -76,10 +87,10 @@ static void a_pass_is_broken_off(void **state)
 
         settings.samples_per_pixel = 1;
         settings.photon_map_file = NULL;
-        assert_int_equal(ag_rendering_create(context, scene, &settings, &rendering), AG_OK);
+        assert_int_equal(ag_rendering_create(context, loaded, &settings, &rendering), AG_OK);
         assert_int_equal(ag_rendering_continue(rendering, 1), AG_OK);
         ag_rendering_finish(rendering, NULL);
-        ag_scene_destroy(scene);
+        ag_scene_destroy(loaded);
         ag_context_destroy(context);
     }
 }
