@@ -206,11 +206,10 @@ static const setting_row ROWS[] = {
     {.text = {.name = "caustic-photons",
               .argument = "N",
               .section = "Light",
-              .help =
-                  "photons to store in the caustic map (default: half of that of --photons, where there are mirrors "
-                  "or glass)",
-              .manual = "Photons to store in the caustic map. The default is half of that of *--photons*; none are "
-                        "traced where nothing reflects or refracts light into bundles.",
+              .help = "photons to store in the caustic map, where there are mirrors or glass (default: by the number "
+                      "of samples, 500000 at most)",
+              .manual = "Photons to store in the caustic map, where there are mirrors or glass. The default is one for "
+                        "each camera sample of the whole frame, from 65536 to 500000, whatever *--photons* is.",
               .is_of_photon_map = true},
      FIELD(caustic_photon_count),
      .kind = SETTING_COUNT,

@@ -86,8 +86,11 @@ static bool is_valid(const setting_row *row, const ag_render_settings *settings)
     const void *value = value_of(row, settings);
     switch (row->kind) {
     case SETTING_WORD: return number < word_count(row);
+    case SETTING_COUNT: /* a double would take the automatic value's neighbours for it */
+        return *(const uint64_t *)value <= (uint64_t)row->most
+                   ? is_in_range(row, number)
+                   : row->has_automatic && *(const uint64_t *)value == (uint64_t)row->automatic;
     case SETTING_INTEGER:
-    case SETTING_COUNT:
     case SETTING_NUMBER: return is_in_range(row, number) || (row->has_automatic && number == row->automatic);
     case SETTING_LAYERS: return (*(const uint32_t *)value & ~aov_known_layers()) == 0;
     case SETTING_SIZE: return is_in_range(row, ((const int *)value)[0]) && is_in_range(row, ((const int *)value)[1]);

@@ -87,6 +87,13 @@ static void defaults_are_as_documented(void **state)
     assert_true(s.photon_aim == AG_PHOTON_AIM_AUTOMATIC && s.gather_samples == 0 && s.noise_level == 0.0f);
     assert_true(s.layers == 0 && !s.denoise && s.photon_map_file == NULL);
 
+    /* automatic is one value, and not those that a double takes for it */
+    s.photon_count = AG_PHOTON_COUNT_AUTOMATIC + 1;
+    bool is_refused = false;
+    for (size_t i = 0; (row = setting_at(i)) != NULL; i++)
+        is_refused = is_refused || !setting_check(row, &s, wrong, sizeof wrong);
+    assert_true(is_refused);
+
     /* the help's numbers are the table's, where it names one */
     for (size_t i = 0; (row = setting_at(i)) != NULL; i++) {
         const char *told = row->text.name ? strstr(row->text.help, "(default ") : NULL;
