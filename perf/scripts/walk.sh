@@ -17,7 +17,8 @@ A SCENE is a file, or the name of one in \$AG_SCENES; without any, classroom, li
   --step X         of the eye from frame to frame, as a share of the distance to what it looks at (0.004)
   --kinds LIST     of kept, new, path (kept,new,path)" "$@"
 frames=48 width=160 spp=8 step=0.004 kinds=kept,new,path scenes=()
-if [[ $quick == yes ]]; then frames=3 width=64 spp=4; fi
+photons=(--photons 1000000 --caustic-photons 500000) # kept maps and new ones alike
+if [[ $quick == yes ]]; then frames=3 width=64 spp=4 photons=(--photons 100000 --caustic-photons 50000); fi
 while ((${#suite_rest[@]} > 0)); do
     case ${suite_rest[0]} in
     --frames | --width | --spp | --step | --kinds) declare "${suite_rest[0]#--}=${suite_rest[1]:?${suite_rest[0]} wants a value}" ;;
@@ -35,9 +36,9 @@ done
 ((${#scenes[@]} > 0)) || scenes=(classroom living-room-2 dining-room)
 
 walk() { # SCENE_FILE NAME KIND
-    local file=$1 name=$2 kind=$3 number=0 eye_x eye_y eye_z x y z ratios options=()
-    [[ $kind != path ]] || options=(--integrator path)
-    [[ $kind != kept ]] || options=(--photon-seed 1 --photon-map "$suite_work/$name.map")
+    local file=$1 name=$2 kind=$3 number=0 eye_x eye_y eye_z x y z ratios options=("${photons[@]}")
+    [[ $kind != path ]] || options+=(--integrator path)
+    [[ $kind != kept ]] || options+=(--photon-seed 1 --photon-map "$suite_work/$name.map")
     while read -r eye_x eye_y eye_z x y z; do
         number=$((number + 1))
         suite_run "$name" "$kind" "$number" --seed "$number" --size "${width}x$((width * 9 / 16))" --spp "$spp" --type float \
