@@ -1,6 +1,7 @@
 /* distribution_2d.c: see distribution_2d.h. */
 #include "math/distribution_2d.h"
 
+#include <assert.h>
 #include <stdlib.h>
 
 /* Running sums of the weights over their total, which it returns; exactly 1 from the last weight on. */
@@ -82,6 +83,7 @@ void distribution_2d_reset(distribution_2d *d)
 /* The cell whose share of [0, 1) u is in, and where in it. */
 static uint32_t find(const float *cdf, const uint16_t *first, uint32_t parts, float u, float *out_within)
 {
+    assert(u >= 0.0f && u < 1.0f);
     const uint32_t part = (uint32_t)(u * (float)parts); /* exact: parts is a power of two */
     uint32_t low = first[part], high = first[part + 1];
     while (low < high) {

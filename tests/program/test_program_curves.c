@@ -7,8 +7,9 @@
 
 static const char *const INTEGRATORS[] = {"--integrator=photonmap", "--integrator=path"};
 enum { INTEGRATOR_COUNT = 2 };
-/* For scenes that nearly all photons leave at once: without it many more are traced, and in vain. */
-#define FEW_PATHS "--photon-paths=1e5", "--caustic-photons=0"
+/* For scenes that nearly all photons leave at once: without it many more are traced, and in vain. What else changes
+ * with it is as by default. */
+#define FEW_PATHS "--photon-paths=1e5", "--caustic-photons=0", "--photon-aim=0.8", "--gather-guiding=0.5"
 static const agreement_bounds BOUNDS = {AGREEMENT_BLUR, 0.007, 0.05}, UNBIASED = {0.0, 0.003, 0.02};
 
 static void test_curves_in_a_furnace(void **state)
