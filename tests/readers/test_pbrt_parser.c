@@ -278,7 +278,8 @@ static void attributes_share_their_arrays(void **state)
     free(text);
 }
 
-/* What pbrt-v3's words are read as is made of a directive's own values: the Attribute says the same to the next. */
+/* The reader rewrites pbrt-v3's parameters as those of pbrt-v4 in one directive's list. The values of the Attribute,
+ * which the list borrows, stay as they are for the next directive. */
 static void attributes_outlive_changes_of_their_values(void **state)
 {
     (void)state;

@@ -4,7 +4,6 @@
 
 #include "material/bsdf.h"
 #include "math/motion.h"
-#include "scene_extent.h"
 
 #define TETRAHEDRON                                                                                                    \
     "Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0 0 0 1] \"integer indices\" [0 2 1 0 1 3 0 3 2 1 2 3] "

@@ -75,8 +75,8 @@ typedef struct pbrt_attribute {
     const char *target;                  /* "shape", ... */
 } pbrt_attribute;
 
-/* Those of one target that are in force: one of each name, so that a directive's work does not grow with the lines of
- * the file before it. */
+/* The attributes of one target that are in force. There is one of each name, so that a directive's work does not grow
+ * with the Attribute lines before it. */
 typedef struct pbrt_attributes {
     pbrt_attribute *in_force[PBRT_MAX_PARAMETERS];
     size_t count;
