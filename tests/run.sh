@@ -35,11 +35,11 @@ if ((${#presets[@]} == 0)); then
     fi
 fi
 
-# Minutes of a preset's tests: as its last run took, else about what two cores of a Xeon (AVX2) take. The quick form took
-# 92 s of processor time there.
+# Minutes of a preset's tests: as its last run took, else as measured on two cores of an AMD EPYC that had other work,
+# too. The quick form took 92 s of processor time there.
 test_minutes() { # PRESET
-    local costs=build/$1/Testing/Temporary/CTestCostData.txt usual=15
-    case $1 in dev*) usual=6 ;; tsan*) usual=10 ;; esac
+    local costs=build/$1/Testing/Temporary/CTestCostData.txt usual=25
+    case $1 in dev*) usual=5 ;; tsan*) usual=12 ;; esac
     if ((${#selection[@]} > 0)); then
         echo $((92 / $(nproc) / 60 + 1))
     elif [[ -s $costs ]]; then
