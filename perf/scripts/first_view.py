@@ -2,9 +2,9 @@
 """first_view.py: how long who walks through a scene by --serve waits for the first picture after a move.
 
 Use: perf/scripts/first_view.py PROGRAM SCENE.pbrt [WIDTHxHEIGHT [STEPS [program's options ...]]]
-Prints lines of CSV: scene, state, steps; seconds to the first tiles, to a coarse picture of the whole view (a quarter of
-the width and height), to a full one (one sample of each pixel); CPU seconds of all workers to the coarse one and to the
-full one; medians of the steps. The camera goes to the side by a fiftieth of the distance to what it looks at, as many steps
+Prints the processor, then lines of CSV: scene, state, steps; seconds to the first tiles, to a coarse picture of the whole
+view (a quarter of the width and height), to a full one (one sample of each pixel); CPU seconds of all workers to the
+coarse one and to the full one; medians of the steps; the most memory that the process has had so far, in MB. The camera goes to the side by a fiftieth of the distance to what it looks at, as many steps
 as are asked for (8), each once the picture before is full. cold: one step from the map as it was traced, no irradiance
 computed yet; warm: after the picture itself has had 4 samples a pixel; again: the same steps once more, backwards.
 """
@@ -43,22 +43,34 @@ def step(run, stood, number):
         time.sleep(0.01)
 
 
-def tell(name, state, steps):
+def processor():
+    with open("/proc/cpuinfo") as file:
+        models = [line.split(":", 1)[1].strip() for line in file if line.startswith("model name")]
+    return f"{models[0] if models else 'an unknown processor'}, {len(os.sched_getaffinity(0))} logical processors"
+
+
+def most_megabytes(run):
+    with open(f"/proc/{run.process.pid}/status") as file:
+        return next(int(line.split()[1]) for line in file if line.startswith("VmHWM:")) * 1024 / 1e6
+
+
+def tell(run, name, state, steps):
     medians = ",".join(f"{statistics.median(values):.2f}" for values in zip(*steps))
-    print(f"{name},{state},{len(steps)},{medians}", flush=True)
+    print(f"{name},{state},{len(steps)},{medians},{most_megabytes(run):.0f}", flush=True)
 
 
 def main(program, scene, size="640x360", steps="8", *options):
     name, count = os.path.basename(os.path.dirname(os.path.abspath(scene))), int(steps)
+    print(processor(), flush=True)
     with tempfile.TemporaryDirectory() as folder:
         files = ["--photon-map", os.path.join(folder, "map"), "-o", os.path.join(folder, "a.exr")]
         run = page_client.Program(program, "-q", "--size", size, *files, *options, scene)
         stood = run.until_state(lambda s: s.get("camera"), "a photon map")["camera"]
-        tell(name, "cold", [step(run, stood, 1)])
+        tell(run, name, "cold", [step(run, stood, 1)])
         run.post("/return")
         run.until_state(lambda s: s["mode"] == "rendering" and s["samples"]["least"] >= 4, "4 samples a pixel")
-        tell(name, "warm", [step(run, stood, number) for number in range(1, count + 1)])
-        tell(name, "again", [step(run, stood, number) for number in range(count, 0, -1)])
+        tell(run, name, "warm", [step(run, stood, number) for number in range(1, count + 1)])
+        tell(run, name, "again", [step(run, stood, number) for number in range(count, 0, -1)])
         run.post("/return")
         run.post("/stop")
         run.end()

@@ -10,10 +10,11 @@
 /* A terminal that is slow to draw is drawn to less often: a worker waits for it. */
 static const double LEAST_INTERVAL_SECONDS = 0.25, INTERVALS_PER_DRAWING = 20.0;
 
-void film_watch_begin(film_watch *w, ag_view *view)
+void film_watch_begin(film_watch *w, ag_view *view, const terminal_abilities *abilities)
 {
     film_watch_end(w);
     w->view = view;
+    w->abilities = abilities;
 }
 
 void film_watch_end(film_watch *w)
@@ -45,10 +46,39 @@ void film_watch_erase(film_watch *w, FILE *terminal)
     w->version = 0; /* it is to be drawn again */
 }
 
-static void draw(film_watch *w, FILE *terminal, const terminal_size *size)
+/* What the terminal tells with its size holds, since a window's characters may change. */
+static void complete_size(const terminal_abilities *abilities, terminal_size *in_out_size)
+{
+    if (in_out_size->cell_width > 0 && in_out_size->cell_height > 0)
+        return;
+    in_out_size->cell_width = abilities->cell_width;
+    in_out_size->cell_height = abilities->cell_height;
+}
+
+static bool is_same_size(const terminal_size *a, const terminal_size *b)
+{
+    return a->columns == b->columns && a->rows == b->rows && a->cell_width == b->cell_width &&
+           a->cell_height == b->cell_height;
+}
+
+static void write_picture(film_watch *w, FILE *made, const terminal_size *size, int width, int height,
+                          bool is_by_sixels)
+{
+    if (is_by_sixels) {
+        w->drawn_rows = terminal_picture_write_sixels(made, w->shown, width, height, size, w->abilities->color_count,
+                                                      w->drawn_rows);
+        return;
+    }
+    terminal_picture_erase(made, w->drawn_rows);
+    w->drawn_rows = terminal_picture_write(made, w->shown, width, height);
+}
+
+static void draw(film_watch *w, FILE *terminal, terminal_size *size)
 {
     int width, height;
-    terminal_picture_fit(w->width, w->height, size, &width, &height);
+    complete_size(w->abilities, size);
+    const bool is_by_sixels = w->abilities->has_sixels && size->cell_width > 0 && size->cell_height > 0;
+    terminal_picture_fit(w->width, w->height, size, is_by_sixels, &width, &height);
     terminal_picture_reduce(w->pixels, w->width, w->height, w->shown, width, height);
     if (ag_view_apply(w->view, w->shown, (size_t)width * (size_t)height) != AG_OK)
         return;
@@ -58,10 +88,9 @@ static void draw(film_watch *w, FILE *terminal, const terminal_size *size)
     if (!made)
         return;
     /* in a terminal of another size the rows have wrapped or gone: the picture begins anew below them */
-    if (size->columns != w->drawn_in.columns || size->rows != w->drawn_in.rows)
+    if (!is_same_size(size, &w->drawn_in))
         w->drawn_rows = 0;
-    terminal_picture_erase(made, w->drawn_rows);
-    w->drawn_rows = terminal_picture_write(made, w->shown, width, height);
+    write_picture(w, made, size, width, height, is_by_sixels);
     w->drawn_in = *size;
     if (fclose(made) == 0) /* at once: standard error has no buffer */
         fwrite(text, 1, length, terminal);

@@ -4,27 +4,30 @@
 #define AFTERGLOW_FILM_WATCH_H
 
 #include "afterglow/afterglow.h"
+#include "sixel.h"
 #include "terminal_picture.h"
+#include "terminal_query.h"
 
 #include <stdbool.h>
 #include <stdio.h>
 
-enum { FILM_WATCH_BYTES_PER_PIXEL = 6 * sizeof(float) }; /* of the two pictures below */
+enum { FILM_WATCH_BYTES_PER_PIXEL = 6 * sizeof(float) + SIXEL_BYTES_PER_PIXEL }; /* with the two pictures below */
 
 typedef struct film_watch {
-    ag_view *view;       /* owned; NULL: nothing is watched */
-    const ag_film *film; /* borrowed; NULL: there is none to be shown */
-    int width, height;   /* the film's */
-    float *pixels;       /* owned: the film as it was read last */
-    float *shown;        /* owned: reduced, and seen through the view; as large as pixels */
-    uint64_t version;    /* of the pixels */
-    double next_seconds; /* when the picture may be drawn again */
-    int drawn_rows;      /* that stand above the cursor's line; 0: none */
+    ag_view *view;                       /* owned; NULL: nothing is watched */
+    const terminal_abilities *abilities; /* borrowed */
+    const ag_film *film;                 /* borrowed; NULL: there is none to be shown */
+    int width, height;                   /* the film's */
+    float *pixels;                       /* owned: the film as it was read last */
+    float *shown;                        /* owned: reduced, and seen through the view; as large as pixels */
+    uint64_t version;                    /* of the pixels */
+    double next_seconds;                 /* when the picture may be drawn again */
+    int drawn_rows;                      /* that stand above the cursor's line; 0: none */
     terminal_size drawn_in;
 } film_watch;
 
-/* Takes the view over. */
-void film_watch_begin(film_watch *w, ag_view *view);
+/* Takes the view over. abilities: those of the terminal, which live as long. */
+void film_watch_begin(film_watch *w, ag_view *view, const terminal_abilities *abilities);
 /* Forgets the view and the film; what is drawn stays. */
 void film_watch_end(film_watch *w);
 

@@ -62,13 +62,17 @@ static bool take_serve_address(const char *value, options *o)
 
 static bool take_progress(const char *value, options *o)
 {
-    static const progress_style styles[] = {PROGRESS_AUTO,  PROGRESS_BAR,  PROGRESS_PLAIN,
-                                            PROGRESS_JSON,  PROGRESS_NONE, PROGRESS_ALF,
-                                            PROGRESS_PLAIN, PROGRESS_NONE, PROGRESS_PICTURE};
+    static const progress_style styles[] = {PROGRESS_AUTO,    PROGRESS_BAR,     PROGRESS_PLAIN,  PROGRESS_JSON,
+                                            PROGRESS_NONE,    PROGRESS_ALF,     PROGRESS_PLAIN,  PROGRESS_NONE,
+                                            PROGRESS_PICTURE, PROGRESS_PICTURE, PROGRESS_PICTURE};
+    enum { BLOCKS = 9, SIXEL };
     int word;
-    if (!parse_word(value, WORDS("auto", "bar", "plain", "json", "none", "alf", "lines", "off", "picture"), &word))
+    if (!parse_word(value,
+                    WORDS("auto", "bar", "plain", "json", "none", "alf", "lines", "off", "picture", "blocks", "sixel"),
+                    &word))
         return false;
     o->progress = styles[word];
+    o->picture_form = word == BLOCKS ? PICTURE_FORM_BLOCKS : word == SIXEL ? PICTURE_FORM_SIXELS : PICTURE_FORM_AUTO;
     return true;
 }
 
@@ -261,18 +265,23 @@ static const option_row ROWS[] = {
          {.name = "progress",
           .argument = "STYLE",
           .section = "Work",
-          .help = "auto (default), bar, picture (in the terminal), plain (or lines), alf, json or none (or off)",
+          .help =
+              "auto (default), bar, picture (in the terminal; blocks or sixel: by these), plain (or lines), alf, json "
+              "or none (or off)",
           .manual =
-              "*auto* (default: a bar on a terminal, else plain), *bar*, *picture* (see below), *plain* or *lines* (whole lines "
+              "*auto* (default: a bar on a terminal, else plain), *bar*, *picture*, *blocks* or *sixel* (see below), *plain* or *lines* (whole lines "
               "with *Progress: NN%*), *alf* (lines with *ALF_PROGRESS NN%* on standard output, as render "
               "queues read them), *json* (one object per line), *none* or *off*. Where it can be told, "
               "each says how long the phase will take. *picture* draws the picture into the terminal while it is "
-              "rendered, above the bar: as half blocks (U+2580) in 24-bit colours, through *--display*, "
-              "*--view* and *--exposure* as a _.png_ file, as large as fits, at most four times a second. It "
+              "rendered, above the bar, through *--display*, *--view* and *--exposure* as a _.png_ file, as large as "
+              "fits, at most four times a second: pixel by pixel as sixels in up to 256 colours of its own where the terminal "
+              "says that it has them, and how large its characters are, else as half blocks (U+2580) in 24-bit "
+              "colours. The terminal is asked for it at the beginning, and has a second for its answer; it is "
+              "not asked by *blocks* (half blocks) and *sixel* (characters are taken for 10 x 20 pixels where "
+              "the system knows no size), nor in the background, nor where keys have been pressed already. The picture "
               "stays there in the end, after *--denoise* where that is asked for. Where standard error is "
               "no terminal, or one without colours or of less than 20 columns and 6 rows, a warning says "
-              "so, and progress is *auto*. Graphics by sixels are not made: no environment says whether a "
-              "terminal has them."},
+              "so, and progress is *auto*."},
      .take = take_progress},
     {.text = {.name = "quiet", .section = "Work", .help = "errors only", .manual = "Errors only."},
      .letter = 'q',

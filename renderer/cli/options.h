@@ -18,6 +18,13 @@ typedef enum progress_style {
     PROGRESS_ALF
 } progress_style;
 
+/* How PROGRESS_PICTURE draws. */
+typedef enum picture_form {
+    PICTURE_FORM_AUTO, /* as the terminal says */
+    PICTURE_FORM_BLOCKS,
+    PICTURE_FORM_SIXELS
+} picture_form;
+
 /* A text that is printed instead of all work. */
 typedef enum options_asked { OPTIONS_ASKED_NOTHING, OPTIONS_ASKED_HELP, OPTIONS_ASKED_VERSION } options_asked;
 
@@ -55,6 +62,7 @@ typedef struct options {
     int tile_index, tile_count; /* from 1 on; 0: the whole */
     double time_limit, begun;   /* s, 0: none; from when it counts, see passes_seconds */
     progress_style progress;
+    picture_form picture_form;
     int verbosity; /* -1 quiet, 0, 1 verbose, 2 debug */
     bool has_camera_from, has_camera_to;
     bool has_camera_detail; /* its up or its field of view */

@@ -18,6 +18,17 @@ enum { LINE_STEP = 5 }; /* percent, between two lines of a log */
 
 static pthread_mutex_t terminal = PTHREAD_MUTEX_INITIALIZER; /* one line at a time, from the log or from here */
 
+static terminal_abilities abilities_of(picture_form form)
+{
+    enum { USUAL_WIDTH = 10, USUAL_HEIGHT = 20 }; /* of a VT340's characters */
+    terminal_abilities told = {0};
+    if (form == PICTURE_FORM_SIXELS)
+        return (terminal_abilities){true, USUAL_WIDTH, USUAL_HEIGHT, TERMINAL_MOST_COLORS};
+    if (form == PICTURE_FORM_AUTO)
+        (void)terminal_query(STDERR_FILENO, &told); /* it has what it has told */
+    return told;
+}
+
 void progress_init(progress *p, const options *o)
 {
     *p = (progress){.style = o->progress,
@@ -31,8 +42,10 @@ void progress_init(progress *p, const options *o)
             fprintf(stderr, "afterglow: warning: --progress picture: %s: the picture is not shown\n", obstacle);
         p->style = PROGRESS_AUTO;
     }
-    if (p->style == PROGRESS_PICTURE)
-        signals_reset_terminal();
+    if (p->style == PROGRESS_PICTURE) {
+        p->abilities = abilities_of(o->picture_form);
+        signals_reset_terminal(p->abilities.has_sixels);
+    }
     if (p->style == PROGRESS_AUTO)
         p->style = o->verbosity < 0 ? PROGRESS_NONE : isatty(STDERR_FILENO) ? PROGRESS_BAR : PROGRESS_PLAIN;
     p->has_precompute = o->render.cache == AG_CACHE_PRECOMPUTE;
@@ -321,7 +334,7 @@ ag_status progress_prepare_film(progress *p, ag_context *context, const ag_outpu
         return AG_OK;
     AG_TRY(ag_view_create(context, output, &view)); /* it may say something, which takes the lock */
     pthread_mutex_lock(&terminal);
-    film_watch_begin(&p->watch, view);
+    film_watch_begin(&p->watch, view, &p->abilities);
     pthread_mutex_unlock(&terminal);
     return AG_OK;
 }
@@ -349,5 +362,6 @@ void progress_finish(progress *p)
 {
     pthread_mutex_lock(&terminal);
     clear_bar(p);
+    terminal_query_forget();
     pthread_mutex_unlock(&terminal);
 }

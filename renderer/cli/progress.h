@@ -25,6 +25,7 @@ typedef struct progress {
     double learned_seconds[AG_PHASE_COUNT]; /* of all pictures before, in sum */
     int learned_count;                      /* of those pictures */
     film_watch watch;                       /* of PROGRESS_PICTURE */
+    terminal_abilities abilities;           /* for it */
     double fraction, seconds_left;          /* as told last */
     int percent;
 } progress;
@@ -40,7 +41,7 @@ typedef struct progress_state {
 } progress_state;
 
 /* Settles AUTO: a bar on a terminal, whole lines elsewhere; nothing when quiet. So it does PICTURE, with a warning,
- * where none can be shown. */
+ * where none can be shown; where one can, it asks the terminal how (terminal_query). */
 void progress_init(progress *p, const options *o);
 
 /* Begins the next of frame_count pictures; progress is told of all of them together. */
@@ -61,7 +62,7 @@ ag_status progress_prepare_film(progress *p, ag_context *context, const ag_outpu
 ag_status progress_show_film(progress *p, const ag_film *film);
 void progress_leave_film(progress *p, bool is_drawn);
 
-/* Takes the bar away. */
+/* Takes the bar away, and a late answer of the terminal's. */
 void progress_finish(progress *p);
 
 #endif

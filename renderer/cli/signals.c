@@ -2,6 +2,8 @@
 #define _GNU_SOURCE
 #include "signals.h"
 
+#include "terminal_query.h"
+
 #include <math.h>
 #include <signal.h>
 #include <stddef.h>
@@ -11,7 +13,7 @@
 static ag_context *signalled_context;
 static volatile sig_atomic_t stop_signal, wants_snapshot, is_rendering;
 
-static volatile sig_atomic_t resets_terminal;
+static volatile sig_atomic_t resets_terminal, ends_sixels;
 
 static bool is_released; /* signals are blocked, by us */
 
@@ -19,14 +21,20 @@ static const int STOPPING[] = {SIGINT, SIGTERM, SIGHUP, SIGXCPU};
 
 static void reset_terminal(void)
 {
-    static const char RESET[] = "\033[0m\r\n";
+    static const char END_SIXELS[] = "\033\\", RESET[] = "\033[0m\r\n";
     if (!resets_terminal)
         return;
-    ssize_t ignored = write(STDERR_FILENO, RESET, sizeof RESET - 1);
+    ssize_t ignored = ends_sixels ? write(STDERR_FILENO, END_SIXELS, sizeof END_SIXELS - 1) : 0;
+    ignored = write(STDERR_FILENO, RESET, sizeof RESET - 1);
     (void)ignored;
+    terminal_query_forget();
 }
 
-void signals_reset_terminal(void) { resets_terminal = 1; }
+void signals_reset_terminal(bool has_sixels)
+{
+    ends_sixels = has_sixels;
+    resets_terminal = 1;
+}
 
 static void on_stop(int number)
 {

@@ -10,8 +10,9 @@
 /* A library that aborts, since it cannot have threads or memory, ends the program with 3 and a message. */
 void signals_catch_abort(void);
 
-/* From now on a signal that ends the process at once resets the terminal's attributes, and begins a line. */
-void signals_reset_terminal(void);
+/* From now on a signal that ends the process at once ends what is drawn by sixels, where has_sixels, resets the
+ * terminal's attributes, begins a line, and takes a late answer of the terminal's away. */
+void signals_reset_terminal(bool has_sixels);
 
 /* The first SIGINT, SIGTERM, SIGHUP or SIGXCPU (a soft limit of CPU time) lets the work end in order: rendering pauses,
  * all else is cancelled. The second ends the process at once, but for SIGXCPU, which the system repeats. */

@@ -2,6 +2,8 @@
 #define _DEFAULT_SOURCE
 #include "terminal_picture.h"
 
+#include "sixel.h"
+
 #include <stdlib.h>
 #include <string.h>
 #include <sys/ioctl.h>
@@ -14,7 +16,8 @@ bool terminal_picture_room(int descriptor, terminal_size *out_size)
     struct winsize size;
     if (ioctl(descriptor, TIOCGWINSZ, &size) != 0)
         return false;
-    *out_size = (terminal_size){size.ws_col, size.ws_row};
+    *out_size = (terminal_size){size.ws_col, size.ws_row, size.ws_col > 0 ? size.ws_xpixel / size.ws_col : 0,
+                                size.ws_row > 0 ? size.ws_ypixel / size.ws_row : 0};
     return size.ws_col >= LEAST_COLUMNS && size.ws_row >= LEAST_ROWS;
 }
 
@@ -29,10 +32,13 @@ const char *terminal_picture_obstacle(int descriptor)
     return terminal_picture_room(descriptor, &size) ? NULL : "the terminal is too small, or does not tell its size";
 }
 
-void terminal_picture_fit(int width, int height, const terminal_size *terminal, int *out_width, int *out_height)
+void terminal_picture_fit(int width, int height, const terminal_size *terminal, bool is_by_sixels, int *out_width,
+                          int *out_height)
 {
-    const double across = (double)(terminal->columns - FREE_COLUMNS) / width,
-                 down = 2.0 * (terminal->rows - FREE_ROWS) / height;
+    const double cell_width = is_by_sixels ? terminal->cell_width : 1.0,
+                 cell_height = is_by_sixels ? terminal->cell_height : 2.0;
+    const double across = cell_width * (terminal->columns - FREE_COLUMNS) / width,
+                 down = cell_height * (terminal->rows - FREE_ROWS) / height;
     double scale = across < down ? across : down;
     scale = scale < 1.0 ? scale : 1.0;
     *out_width = (int)(width * scale + 1e-6);
@@ -84,6 +90,34 @@ int terminal_picture_write(FILE *file, const float *shown, int width, int height
         fputs("\033[0m\033[K\n", file);
     }
     return (height + 1) / 2;
+}
+
+int terminal_picture_write_sixels(FILE *file, const float *shown, int width, int height, const terminal_size *terminal,
+                                  int color_count, int drawn_rows)
+{
+    const int rows = (height + terminal->cell_height - 1) / terminal->cell_height;
+    char *text;
+    size_t length;
+    FILE *made = open_memstream(&text, &length);
+    if (!made)
+        return 0;
+    const bool is_whole = sixel_write(made, shown, width, height, color_count);
+    if (fclose(made) != 0)
+        return 0;
+    if (is_whole) {
+        fputc('\r', file);
+        if (rows != drawn_rows) {
+            terminal_picture_erase(file, drawn_rows);
+            for (int i = 0; i < rows; i++)
+                fputc('\n', file); /* the terminal scrolls now, so that it does not while it draws */
+        }
+        /* terminals differ in where a picture leaves the cursor */
+        fprintf(file, "\033[%dA\0337", rows);
+        fwrite(text, 1, length, file);
+        fprintf(file, "\0338\033[%dB\r", rows);
+    }
+    free(text);
+    return is_whole ? rows : 0;
 }
 
 void terminal_picture_erase(FILE *file, int rows)
