@@ -177,7 +177,7 @@ static uint32_t await(irradiance_cache *cache, const run_context *run, uint32_t 
 
 typedef struct precompute_job {
     irradiance_cache *cache;
-    const run_context *run;
+    run_context *run;
 } precompute_job;
 
 static void precompute_block(void *user, uint64_t begin, uint64_t end, uint64_t block, unsigned worker_index)
@@ -185,8 +185,10 @@ static void precompute_block(void *user, uint64_t begin, uint64_t end, uint64_t 
     (void)block;
     const precompute_job *job = user;
     irradiance_cache *cache = job->cache;
-    for (uint64_t i = begin; i < end && !run_is_cancelled(job->run); i++)
+    for (uint64_t i = begin; i < end && !run_is_cancelled(job->run); i++) {
         demand(cache, (uint32_t)i, worker_index);
+        run_look(job->run); /* searches in what is left of a lost map are slow */
+    }
     /* other processes may still be computing some, or have died over them; no claim is held while waiting for those */
     for (uint64_t i = begin; cache->owners && i < end && !run_is_cancelled(job->run); i++)
         await(cache, job->run, (uint32_t)i, worker_index);
@@ -357,8 +359,8 @@ static void prefetch_answer(const photon_map *map, uint32_t irradiance_photon, c
 /* Demands the irradiance of each photon in the order, and answers the queries whose photons' words are ready then or
  * that no photon stands for. The entries of the others, which other threads are computing, are moved to the front;
  * *out_waiting: how many there are. Returns false where the run is cancelled meanwhile. */
-static bool answer_most(irradiance_cache *cache, const run_context *run, const irradiance_query *queries,
-                        uint64_t *order, uint32_t count, unsigned worker_index, rgb *out_irradiance, bool *out_holds,
+static bool answer_most(irradiance_cache *cache, run_context *run, const irradiance_query *queries, uint64_t *order,
+                        uint32_t count, unsigned worker_index, rgb *out_irradiance, bool *out_holds,
                         uint32_t *out_waiting)
 {
     enum { CANCEL_EVERY = 16, AHEAD = 16 };
@@ -366,8 +368,11 @@ static bool answer_most(irradiance_cache *cache, const run_context *run, const i
     *out_waiting = 0;
     for (uint32_t k = 0; k < count; k++) {
         uint32_t i = (uint32_t)order[k], irradiance_photon = (uint32_t)(order[k] >> 32);
-        if (k % CANCEL_EVERY == 0 && run_is_cancelled(run))
-            return false;
+        if (k % CANCEL_EVERY == 0) {
+            run_look(run);
+            if (run_is_cancelled(run))
+                return false;
+        }
         if (k + AHEAD < count)
             prefetch_answer(cache->map, (uint32_t)(order[k + AHEAD] >> 32),
                             &out_irradiance[(uint32_t)order[k + AHEAD]]);
@@ -388,7 +393,7 @@ static bool answer_most(irradiance_cache *cache, const run_context *run, const i
 
 /* Works in sweeps, so that each has the processor's caches to itself: it looks up the photons in the map's order, then
  * computes what nobody has claimed and reads what is ready, and waits for the rest at the end. */
-void irradiance_cache_get_many(irradiance_cache *cache, const run_context *run, const irradiance_query *queries,
+void irradiance_cache_get_many(irradiance_cache *cache, run_context *run, const irradiance_query *queries,
                                uint32_t count, unsigned worker_index, rgb *out_irradiance, bool *out_holds)
 {
     const photon_map *map = cache->map;

@@ -108,7 +108,7 @@ void irradiance_cache_retry(irradiance_cache *cache, const run_context *run, irr
 /* Requests the irradiance at up to IRRADIANCE_BATCH_MAX points, in the map's order, so that consecutive lookups and
  * estimates lie near each other. Those that another thread is computing are set aside and finished last. Afterwards all
  * are answered, unless the run is cancelled. out_irradiance and out_holds: [count], as in irradiance_request. */
-void irradiance_cache_get_many(irradiance_cache *cache, const run_context *run, const irradiance_query *queries,
+void irradiance_cache_get_many(irradiance_cache *cache, run_context *run, const irradiance_query *queries,
                                uint32_t count, unsigned worker_index, rgb *out_irradiance, bool *out_holds);
 
 /* Returns an estimate at the point itself, which is not kept, even where it does not hold. W/m^2. */

@@ -20,8 +20,9 @@ typedef struct guard {
 } guard;
 
 static guard guards[GUARDS_MAX];
+static pthread_mutex_t handler_mutex = PTHREAD_MUTEX_INITIALIZER; /* who installs the handler */
 static struct sigaction handled_before;
-static pthread_once_t handler_once = PTHREAD_ONCE_INIT;
+static _Thread_local volatile sig_atomic_t is_passed_on; /* the fault is the other handler's, which may call ours */
 
 static void on_bus_error(int number, siginfo_t *info, void *context)
 {
@@ -40,26 +41,36 @@ static void on_bus_error(int number, siginfo_t *info, void *context)
             return;
     }
     /* not ours: as if this handler were not there */
-    if (handled_before.sa_flags & SA_SIGINFO) {
-        handled_before.sa_sigaction(number, info, context);
-    } else if (handled_before.sa_handler != SIG_DFL && handled_before.sa_handler != SIG_IGN) {
-        handled_before.sa_handler(number);
-    } else {
+    if (is_passed_on || (!(handled_before.sa_flags & SA_SIGINFO) &&
+                         (handled_before.sa_handler == SIG_DFL || handled_before.sa_handler == SIG_IGN))) {
         signal(number, SIG_DFL);
         raise(number);
+        return;
     }
+    is_passed_on = 1;
+    if (handled_before.sa_flags & SA_SIGINFO)
+        handled_before.sa_sigaction(number, info, context);
+    else
+        handled_before.sa_handler(number);
+    is_passed_on = 0;
 }
 
+/* Others may have put theirs in its place since the last mapping. */
 static void install_handler(void)
 {
-    struct sigaction action = {.sa_sigaction = on_bus_error, .sa_flags = SA_SIGINFO | SA_RESTART};
+    struct sigaction action = {.sa_sigaction = on_bus_error, .sa_flags = SA_SIGINFO | SA_RESTART}, now;
     sigemptyset(&action.sa_mask);
-    sigaction(SIGBUS, &action, &handled_before);
+    pthread_mutex_lock(&handler_mutex);
+    if (sigaction(SIGBUS, NULL, &now) == 0 && !(now.sa_flags & SA_SIGINFO && now.sa_sigaction == on_bus_error)) {
+        handled_before = now;
+        sigaction(SIGBUS, &action, NULL);
+    }
+    pthread_mutex_unlock(&handler_mutex);
 }
 
 int map_guard_add(void *memory, size_t size_bytes)
 {
-    pthread_once(&handler_once, install_handler);
+    install_handler();
     for (int i = 0; i < GUARDS_MAX; i++) {
         uint32_t expected = GUARD_FREE;
         if (!cas_acquire_u32(&guards[i].state, &expected, GUARD_TAKEN))

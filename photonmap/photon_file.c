@@ -267,6 +267,8 @@ photon_file_result photon_file_read(const run_context *run, const char *path, ph
     return PHOTON_FILE_OPEN;
 }
 
+bool photon_file_has_memory(const photon_file *file) { return !file->is_shared || !map_guard_is_lost(file->guard); }
+
 bool photon_file_is_intact(const photon_file *file)
 {
     struct stat status;

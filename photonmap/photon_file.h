@@ -71,6 +71,8 @@ photon_file_result photon_file_read(const run_context *run, const char *path, ph
 /* Returns whether the file is still the one that was opened. It may be truncated or overwritten while it is mapped:
  * data read since this was last true may then not be the maps'. A copy in memory is always intact. */
 bool photon_file_is_intact(const photon_file *file);
+/* A part of that, which costs nothing: whether all that has been read was there. */
+bool photon_file_has_memory(const photon_file *file);
 
 /* Closes the file, after the maps, when this process holds no claim. {0} is fine. */
 void photon_file_close(photon_file *file);

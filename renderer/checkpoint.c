@@ -2,6 +2,7 @@
 #define _POSIX_C_SOURCE 200809L
 #include "checkpoint.h"
 
+#include "film/film_copy.h"
 #include "integrator/integrator.h"
 #include "output/atomic_file.h"
 #include "rays/bvh.h"
@@ -99,6 +100,13 @@ ag_status ag_rendering_write_checkpoint(const ag_rendering *r, const char *path)
         if (!words)
             return AG_ERROR_MEMORY;
         irradiance_cache_save(&r->maps->cache, words);
+        if (!photon_file_is_intact(&r->maps->file)) {
+            log_message(r->context->log, AG_LOG_ERROR,
+                        "'%s': the photon map was cut short or overwritten: no checkpoint is written",
+                        r->map_name ? r->map_name : "");
+            free(words);
+            return AG_ERROR_SYSTEM;
+        }
     }
     int plane_count = film_planes(r->film, planes), count = 0;
     pieces[count++] = (atomic_file_piece){&header, sizeof header};
@@ -197,7 +205,7 @@ ag_status ag_rendering_read_checkpoint(ag_rendering *r, const char *path)
     if (why)
         return refuse(r, path, why, what);
     film_resolve(r->film);
-    return AG_OK;
+    return r->kept ? film_copy_take(r->film, &r->kept) : AG_OK; /* what a pass that is broken off falls back to */
 }
 
 ag_sample_counts ag_rendering_sample_counts(const ag_rendering *r)

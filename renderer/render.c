@@ -61,7 +61,7 @@ static float pixel_share(const scene *s, const ag_render_settings *settings)
     return fminf(fmaxf(FILTER_WIDTH / sqrtf((float)settings->samples_per_pixel), SHARE_MIN), 1.0f);
 }
 
-static transport make_transport(const ag_context *context, const scene *s, const ag_render_settings *settings,
+static transport make_transport(ag_context *context, const scene *s, const ag_render_settings *settings,
                                 const aov_layout *layout)
 {
     transport t = {.s = s,
@@ -123,9 +123,11 @@ ag_status rendering_settle(ag_context *context, const scene *s, const ag_render_
 
 /* --- a photon map that others can reach --- */
 
-/* Called after a pass, with its status: what it has rendered counts only where the map's file is still whole. */
+/* Called after a pass, or after what comes before the first, with its status: what was done counts only where the map's
+ * file is still whole. Ends the watch over it. */
 static ag_status check_map(ag_rendering *r, ag_status status)
 {
+    run_end_watch(&r->context->run);
     const bool was_broken_off = run_end_break(&r->context->run); /* by a look that may have another answer now */
     if (!r->maps || !r->maps->file.is_shared || (status != AG_OK && status != AG_PAUSED && status != AG_CANCELLED))
         return status;
@@ -137,9 +139,9 @@ static ag_status check_map(ag_rendering *r, ag_status status)
         film_copy_restore(r->film, r->kept);
     log_message(
         r->context->log, AG_LOG_ERROR,
-        "'%s': the photon map was cut short or overwritten while it was in use; what was rendered since the last "
-        "pass is dropped: trace the map anew, and leave its file alone (moving another one to its name is fine)",
-        r->map_name ? r->map_name : "");
+        "'%s': the photon map was cut short or overwritten while it was in use%s: trace the map anew, and leave its "
+        "file alone (moving another one to its name is fine)",
+        r->map_name ? r->map_name : "", r->kept ? "; what was rendered since the last pass is dropped" : "");
     return AG_ERROR_SYSTEM;
 }
 
@@ -198,10 +200,9 @@ static ag_status begin_rendering(ag_rendering *r, const ag_render_settings *sett
     r->context->rendered = r->settings;
     r->context->rendered.photon_map_file = NULL; /* the caller's */
     r->aspect = (float)r->settings.width / (float)r->settings.height;
-    AG_TRY(prepare(r, NULL));
     if (r->settings.photon_map_file)
         r->map_name = strdup(r->settings.photon_map_file);
-    return check_map(r, AG_OK); /* caches and guides have been made of it */
+    return check_map(r, prepare(r, NULL));
 }
 
 static void borrow(ag_rendering *r, ag_context *context, ag_scene *loaded)
@@ -278,10 +279,10 @@ ag_status ag_rendering_create_view(ag_rendering *beside, const float from[3], co
     r->aspect = beside->aspect;
     r->map_name = beside->map_name ? strdup(beside->map_name) : NULL;
     ag_status status = look_from(r, from, to, up);
+    if (status == AG_OK && beside->maps)
+        maps_watch(beside->maps);
     if (status == AG_OK)
-        status = prepare(r, beside);
-    if (status == AG_OK)
-        status = check_map(r, AG_OK);
+        status = check_map(r, prepare(r, beside));
     run_speak(&r->context->run, told);
     floating_point_leave(callers_arithmetic);
     if (status == AG_OK)
@@ -322,6 +323,8 @@ ag_status ag_rendering_continue(ag_rendering *r, int samples_per_pixel)
     uint32_t wanted = (uint32_t)samples_per_pixel;
     phase_begin begin = context_begin_phase();
     ag_progress_fn *told = r->is_view ? run_silence(&context->run) : NULL;
+    if (r->maps)
+        maps_watch(r->maps);
     ag_status status = check_map(r, render_pass(r, wanted));
     if (status == AG_OK && r->keeps_passes && film_copy_take(r->film, &r->whole) != AG_OK) {
         r->keeps_passes = false;

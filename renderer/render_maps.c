@@ -184,6 +184,18 @@ static ag_status follow_last_frame(maps *m, const scene *s)
     return status;
 }
 
+static bool is_whole(const void *watched, bool thoroughly)
+{
+    const photon_file *file = watched;
+    return thoroughly ? photon_file_is_intact(file) : photon_file_has_memory(file);
+}
+
+void maps_watch(const maps *m)
+{
+    if (m->file.is_shared)
+        run_begin_watch(&m->context->run, is_whole, &m->file);
+}
+
 ag_status maps_create(ag_context *context, const scene *s, const ag_render_settings *settings, maps **out_maps)
 {
     maps *m = *out_maps = calloc(1, sizeof *m);
@@ -198,6 +210,7 @@ ag_status maps_create(ag_context *context, const scene *s, const ag_render_setti
     else
         status = trace_maps(context, s, settings, &m->global, &m->caustic);
     AG_TRY(status);
+    maps_watch(m);
     AG_TRY(follow_last_frame(m, s));
     phase_begin guiding = context_begin_phase();
     AG_TRY(incident_light_create(&context->run, &m->global.tree, settings->gather_guiding, &m->incident));

@@ -13,6 +13,10 @@ ag_status maps_create(ag_context *context, const scene *s, const ag_render_setti
 maps *maps_hold(maps *m);
 void maps_release(maps *m); /* NULL is fine */
 
+/* From now on phases are broken off when the file of the maps is cut short or overwritten, until run_end_watch: begun
+ * by maps_create as soon as there is a file. */
+void maps_watch(const maps *m);
+
 /* Whether photons are traced into the caustic map: there is something that focuses light, and they are wanted. */
 bool maps_have_caustics(const scene *s, const ag_render_settings *settings);
 

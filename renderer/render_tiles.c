@@ -6,7 +6,6 @@
 #include "integrator/first_hit.h"
 #include "integrator/integrator.h"
 #include "integrator/sample_queue.h"
-#include "map_guard.h"
 #include "status.h"
 #include "tile_scheduler.h"
 
@@ -73,25 +72,7 @@ typedef struct tile_job {
     unsigned worker_count;
     atomic_u64 samples_done;             /* for the progress alone: relaxed */
     double progress_begin, progress_end; /* of the phase, before and after this pass */
-    const photon_file *map;              /* of the photons, which others may damage; or NULL */
-    double next_look;                    /* s: when the first worker looks at the map's file again */
 } tile_job;
-
-/* Looks whether the photon map is still what it was, and else breaks the pass off. Each worker sees memory that was
- * lost; the file, which takes some microseconds to look at, is looked at seldom, by the first. */
-static const double MAP_LOOK_SECONDS = 0.5;
-static void look_at_map(tile_job *job, const eye_worker *worker)
-{
-    if (!job->map || !job->map->is_shared)
-        return;
-    bool is_whole = !map_guard_is_lost(job->map->guard);
-    if (is_whole && worker->index == 0 && clock_seconds() >= job->next_look) {
-        is_whole = photon_file_is_intact(job->map);
-        job->next_look = clock_seconds() + MAP_LOOK_SECONDS;
-    }
-    if (!is_whole)
-        run_break_off(&job->context->run);
-}
 
 /* The sample of that index of a pixel, of that number in the worker's queue: all but the gathered light, which the
  * worker's batch brings later. */
@@ -154,7 +135,7 @@ static void finish_samples(tile_job *job, eye_worker *worker)
     if (job->kind->complete && !run_is_cancelled(t->run))
         job->kind->complete(t, worker);
     uint32_t count = worker->queue->count;
-    look_at_map(job, worker);
+    run_look(&job->context->run);
     if (count == 0 || run_is_cancelled(t->run))
         return;
     worker->samples_not_finite += sample_queue_deliver(worker->queue, batch ? batch->gathered : NULL,
@@ -248,7 +229,6 @@ ag_status render_tiles(ag_rendering *r, uint32_t wanted)
                     .aspect = r->aspect,
                     .workers = r->workers,
                     .wanted = wanted,
-                    .map = r->maps ? &r->maps->file : NULL,
                     .worker_count = context->statistics.threads,
                     .progress_begin = r->is_pilot ? 0.0 : film_count_samples(film).mean / most,
                     .progress_end = r->is_pilot ? 0.0 : (double)wanted / most};

@@ -50,6 +50,12 @@ static inline bool cas_release_u32(atomic_u32 *a, uint32_t *expected, uint32_t d
     return atomic_compare_exchange_strong_explicit(a, expected, desired, memory_order_release, memory_order_relaxed);
 }
 
+/* Strong, and orders nothing else. */
+static inline bool cas_relaxed_u64(atomic_u64 *a, uint64_t *expected, uint64_t desired)
+{
+    return atomic_compare_exchange_strong_explicit(a, expected, desired, memory_order_relaxed, memory_order_relaxed);
+}
+
 static inline uint32_t fetch_or_relaxed_u32(atomic_u32 *a, uint32_t v)
 {
     return atomic_fetch_or_explicit(a, v, memory_order_relaxed);

@@ -38,6 +38,7 @@ static void work(void *user, unsigned worker_index)
         uint64_t rest = l->count - begin;
         uint64_t end = begin + (rest < l->block_size ? rest : l->block_size);
         l->fn(l->user, begin, end, block, worker_index);
+        run_look(l->run);
         report(l, fetch_add_relaxed_u64(&l->done_count, 1) + 1);
     }
 }

@@ -7,6 +7,7 @@
 #include "clock.h"
 
 static const double PROGRESS_INTERVAL_SECONDS = 0.05;
+static const double LOOK_INTERVAL_SECONDS = 0.5;
 
 void run_context_init(run_context *run, thread_pool *pool, log_sink *log, ag_progress_fn *progress, void *progress_user)
 {
@@ -19,10 +20,35 @@ void run_context_init(run_context *run, thread_pool *pool, log_sink *log, ag_pro
     run->progress_time = 0.0;
     run->progress_phase = AG_PHASE_COUNT; /* none yet */
     run->inputs = NULL;
+    run->watch = NULL;
+    store_relaxed_u64(&run->next_look, 0);
     store_relaxed_u32(&run->stop, 0);
 }
 
 void run_context_reset(run_context *run) { pthread_mutex_destroy(&run->progress_mutex); }
+
+/* --- what is watched --- */
+
+static uint64_t clock_ns(double ahead_seconds) { return (uint64_t)(1e9 * (clock_seconds() + ahead_seconds)); }
+
+void run_begin_watch(run_context *run, run_watch_fn *watch, const void *watched)
+{
+    run->watch = watch;
+    run->watched = watched;
+    store_relaxed_u64(&run->next_look, clock_ns(LOOK_INTERVAL_SECONDS));
+}
+
+void run_look(run_context *run)
+{
+    if (!run->watch)
+        return;
+    uint64_t due = load_relaxed_u64(&run->next_look);
+    bool is_turn = clock_ns(0.0) >= due && cas_relaxed_u64(&run->next_look, &due, clock_ns(LOOK_INTERVAL_SECONDS));
+    if (!run->watch(run->watched, is_turn))
+        run_break_off(run);
+}
+
+/* --- progress --- */
 
 /* Under the mutex. */
 static void tell(run_context *run, ag_phase phase, double fraction, double now)

@@ -14,6 +14,10 @@
 /* A pause is heeded by the phase that allows it alone, and stays asked for until then. */
 typedef enum run_stop { RUN_CANCELLED = 1, RUN_PAUSE_WANTED = 2, RUN_PAUSE_ALLOWED = 4, RUN_IN_VAIN = 8 } run_stop;
 
+/* Whether what a phase works on is still what it was. thoroughly: also what takes some microseconds to find out. Called
+ * by any worker, and thoroughly by one at a time. */
+typedef bool run_watch_fn(const void *watched, bool thoroughly);
+
 typedef struct run_context {
     thread_pool *pool;        /* borrowed */
     log_sink *log;            /* borrowed, may be NULL */
@@ -24,6 +28,9 @@ typedef struct run_context {
     double progress_time;           /* when, in clock_seconds */
     ag_phase progress_phase;
     struct input_files *inputs; /* borrowed, or NULL: what is known of the files of the scene that is read (scene/) */
+    run_watch_fn *watch;        /* NULL: nothing is watched */
+    const void *watched;        /* for watch; borrowed */
+    atomic_u64 next_look;       /* ns of the clock: when to look thoroughly again; orders nothing else, so relaxed */
     atomic_u32 stop;            /* run_stop bits: set seldom, read often; orders nothing else, so relaxed */
 } run_context;
 
@@ -42,6 +49,12 @@ static inline bool run_end_break(run_context *run)
 {
     return fetch_and_relaxed_u32(&run->stop, ~(uint32_t)RUN_IN_VAIN) & RUN_IN_VAIN;
 }
+/* From now on phases are broken off once watch says that what they work on is not what it was. Neither may be called
+ * while a phase works; watched is borrowed until the end. */
+void run_begin_watch(run_context *run, run_watch_fn *watch, const void *watched);
+static inline void run_end_watch(run_context *run) { run->watch = NULL; }
+/* Looks at what is watched, thoroughly twice a second. Workers call it between pieces of their work. */
+void run_look(run_context *run);
 static inline void run_pause(run_context *run) { fetch_or_relaxed_u32(&run->stop, RUN_PAUSE_WANTED); }
 /* From this call on run_is_cancelled is true where a pause is wanted, so that all that stops for good also pauses. */
 static inline void run_allow_pause(run_context *run) { fetch_or_relaxed_u32(&run->stop, RUN_PAUSE_ALLOWED); }

@@ -134,7 +134,7 @@ static ag_status estimate_all(bench_stage *stage, ag_context *context, bench_out
 typedef struct lookup_job {
     bench_stage *stage;
     irradiance_cache *cache;
-    const run_context *run;
+    run_context *run;
 } lookup_job;
 
 static void look_up(void *user, uint64_t begin, uint64_t end, uint64_t block, unsigned worker)

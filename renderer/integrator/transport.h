@@ -16,7 +16,7 @@
 
 typedef struct transport {
     const scene *s;
-    const run_context *run;           /* whether to stop */
+    run_context *run;                 /* whether to stop */
     const photon_map *caustic;        /* may be empty */
     irradiance_cache *cache;          /* over the global map; NULL for path tracing */
     const incident_light *incident;   /* likewise, what guides gathers; NULL: nothing */

@@ -1,6 +1,6 @@
-/* test_lost_map.c: a photon map's file is cut short or overwritten within a pass, or one look at it fails: the pass is
- * broken off, the film is that of the last pass that saw the file whole, and the context works on. Threads: those of
- * the renderings. */
+/* test_lost_map.c: a photon map's file is cut short or overwritten, or one look at it fails: what is under way is
+ * broken off, the film is that of the last pass that saw the file whole, no checkpoint is written, and the context
+ * works on. Threads: those of the renderings. */
 #define _GNU_SOURCE
 #include "context.h"
 #include "fixtures/layers_fixture.h"
@@ -21,8 +21,12 @@ typedef struct work {
     char map[160];
     ag_context *context;
     loss kind;
+    ag_phase phase;
     bool is_armed, is_done;
+    double last_fraction; /* of the phase, that was told */
     char said[512];
+    ag_scene *loaded;
+    ag_render_settings settings;
 } work;
 
 static void hear(void *user, ag_log_level level, const char *text)
@@ -32,76 +36,188 @@ static void hear(void *user, ag_log_level level, const char *text)
         snprintf(w->said, sizeof w->said, "%s", text);
 }
 
+static void lose(work *w)
+{
+    if (w->kind == LOSS_OF_ONE_LOOK) {
+        run_break_off(&w->context->run);
+    } else if (w->kind == LOSS_CUT) {
+        if (truncate(w->map, 0) != 0)
+            abort();
+    } else {
+        char other[4096] = "another map";
+        int file = open(w->map, O_WRONLY);
+        if (file < 0 || write(file, other, sizeof other) != (ssize_t)sizeof other || close(file) != 0)
+            abort();
+    }
+}
+
 static void watch(void *user, ag_phase phase, double fraction)
 {
     work *w = user;
-    if (!w->is_armed || w->is_done || phase != AG_PHASE_RENDER || fraction <= 1.0 / ENDLESS)
+    if (!w->is_armed || phase != w->phase)
+        return;
+    w->last_fraction = fraction;
+    if (w->is_done || fraction <= 1.0 / ENDLESS)
         return;
     w->is_done = true;
-    if (w->kind == LOSS_OF_ONE_LOOK) {
-        run_break_off(&w->context->run);
-        return;
-    }
-    if (w->kind == LOSS_CUT) {
-        if (truncate(w->map, 0) != 0)
-            abort();
-        return;
-    }
-    char other[4096] = "another map";
-    int file = open(w->map, O_WRONLY);
-    if (file < 0 || write(file, other, sizeof other) != (ssize_t)sizeof other || close(file) != 0)
-        abort();
+    lose(w);
+    if (phase == AG_PHASE_PRECOMPUTE)
+        store_relaxed_u64(&w->context->run.next_look, 0); /* else this would take half a second of work */
+}
+
+static work begin_work(loss kind)
+{
+    work w = {.kind = kind, .phase = AG_PHASE_RENDER};
+    snprintf(w.map, sizeof w.map, "%s", in_folder("lost.map"));
+    return w;
+}
+
+/* The work stays where it is, for the context's callbacks. */
+static void open_scene(work *w)
+{
+    ag_context_settings made = ag_default_context_settings();
+    made.thread_count = 2;
+    made.log = hear;
+    made.progress = watch;
+    made.user = w;
+    assert_int_equal(ag_context_create(&made, &w->context), AG_OK);
+    assert_int_equal(ag_scene_load(w->context, LAYERS_SCENES "box_with_blocks.pbrt", &w->loaded), AG_OK);
+    assert_int_equal(ag_render_settings_from_scene(w->context, w->loaded, &w->settings), AG_OK);
+    w->settings.width = w->settings.height = SIZE;
+    w->settings.samples_per_pixel = ENDLESS;
+    w->settings.photon_count = 3000;
+    w->settings.noise_level = 0.0f;
+    w->settings.photon_map_file = w->map;
+}
+
+static void close_scene(work *w)
+{
+    ag_scene_destroy(w->loaded);
+    ag_context_destroy(w->context);
+}
+
+static void assert_told(const work *w)
+{
+    assert_non_null(strstr(w->said, "the photon map was cut short or overwritten"));
+}
+
+static ag_rendering *begin_rendering(work *w)
+{
+    ag_rendering *rendering;
+    assert_int_equal(ag_rendering_create(w->context, w->loaded, &w->settings, &rendering), AG_OK);
+    return rendering;
+}
+
+static void copy_film(const ag_rendering *rendering, float out[VALUES])
+{
+    int width, height;
+    memcpy(out, ag_film_pixels(ag_rendering_film(rendering), &width, &height), VALUES * sizeof *out);
+}
+
+/* The rendering goes on until the map is lost, and its film is then that of before. */
+static void assert_broken_off(work *w, ag_rendering *rendering)
+{
+    float before[VALUES], after[VALUES];
+    copy_film(rendering, before);
+    w->is_armed = true;
+    assert_int_equal(ag_rendering_continue(rendering, ENDLESS), AG_ERROR_SYSTEM);
+    assert_true(w->is_done);
+    assert_told(w);
+    copy_film(rendering, after);
+    assert_memory_equal(after, before, sizeof before);
+    assert_int_equal(ag_rendering_sample_counts(rendering).most, 1);
+}
+
+/* What follows in the context is as ever. */
+static void assert_works_on(work *w)
+{
+    w->settings.samples_per_pixel = 1;
+    w->settings.photon_map_file = NULL;
+    w->settings.cache = AG_CACHE_ON_DEMAND;
+    ag_rendering *rendering = begin_rendering(w);
+    assert_int_equal(ag_rendering_continue(rendering, 1), AG_OK);
+    ag_rendering_finish(rendering, NULL);
 }
 
 static void a_pass_is_broken_off(void **state)
 {
     (void)state;
     for (int k = 0; k < LOSS_KINDS; k++) {
-        work w = {.kind = (loss)k};
-        snprintf(w.map, sizeof w.map, "%s", in_folder("lost.map"));
-        ag_context_settings made = ag_default_context_settings();
-        ag_context *context;
-        ag_scene *loaded;
-        ag_rendering *rendering;
-        ag_render_settings settings;
-        float before[VALUES];
-        int width, height;
-        made.thread_count = 2;
-        made.log = hear;
-        made.progress = watch;
-        made.user = &w;
-        assert_int_equal(ag_context_create(&made, &context), AG_OK);
-        w.context = context;
-        assert_int_equal(ag_scene_load(context, LAYERS_SCENES "box_with_blocks.pbrt", &loaded), AG_OK);
-        assert_int_equal(ag_render_settings_from_scene(context, loaded, &settings), AG_OK);
-        settings.width = settings.height = SIZE;
-        settings.samples_per_pixel = ENDLESS;
-        settings.photon_count = 3000;
-        settings.noise_level = 0.0f;
-        settings.photon_map_file = w.map;
-        assert_int_equal(ag_rendering_create(context, loaded, &settings, &rendering), AG_OK);
+        work w = begin_work((loss)k);
+        open_scene(&w);
+        ag_rendering *rendering = begin_rendering(&w);
         assert_int_equal(ag_rendering_continue(rendering, 1), AG_OK);
-        memcpy(before, ag_film_pixels(ag_rendering_film(rendering), &width, &height), sizeof before);
-        w.is_armed = true;
-        assert_int_equal(ag_rendering_continue(rendering, ENDLESS), AG_ERROR_SYSTEM);
-        assert_true(w.is_done);
-        assert_non_null(strstr(w.said, "the photon map was cut short or overwritten"));
-        assert_memory_equal(ag_film_pixels(ag_rendering_film(rendering), &width, &height), before, sizeof before);
+        assert_broken_off(&w, rendering);
         ag_rendering_finish(rendering, NULL);
         assert_int_equal(unlink(w.map), 0);
+        assert_works_on(&w);
+        close_scene(&w);
+    }
+}
 
-        settings.samples_per_pixel = 1;
-        settings.photon_map_file = NULL;
-        assert_int_equal(ag_rendering_create(context, loaded, &settings, &rendering), AG_OK);
+/* The first pass after a checkpoint was read is broken off: the film is the checkpoint's. */
+static void the_picture_of_a_checkpoint_stays(void **state)
+{
+    (void)state;
+    work w = begin_work(LOSS_OVERWRITTEN);
+    open_scene(&w);
+    ag_rendering *rendering = begin_rendering(&w);
+    assert_int_equal(ag_rendering_continue(rendering, 1), AG_OK);
+    assert_int_equal(ag_rendering_write_checkpoint(rendering, in_folder("one.checkpoint")), AG_OK);
+    ag_rendering_finish(rendering, NULL);
+    rendering = begin_rendering(&w);
+    assert_int_equal(ag_rendering_read_checkpoint(rendering, in_folder("one.checkpoint")), AG_OK);
+    assert_broken_off(&w, rendering);
+    ag_rendering_finish(rendering, NULL);
+    close_scene(&w);
+    assert_int_equal(unlink(w.map) | unlink(in_folder("one.checkpoint")), 0);
+}
+
+/* A checkpoint holds irradiances, too: it is not written from a map that was lost. */
+static void no_checkpoint_of_a_lost_map(void **state)
+{
+    (void)state;
+    for (loss kind = LOSS_CUT; kind <= LOSS_OVERWRITTEN; kind++) {
+        work w = begin_work(kind);
+        open_scene(&w);
+        ag_rendering *rendering = begin_rendering(&w);
         assert_int_equal(ag_rendering_continue(rendering, 1), AG_OK);
+        lose(&w);
+        assert_int_equal(ag_rendering_write_checkpoint(rendering, in_folder("lost.checkpoint")), AG_ERROR_SYSTEM);
+        assert_told(&w);
+        assert_int_equal(access(in_folder("lost.checkpoint"), F_OK), -1);
         ag_rendering_finish(rendering, NULL);
-        ag_scene_destroy(loaded);
-        ag_context_destroy(context);
+        close_scene(&w);
+        assert_int_equal(unlink(w.map), 0);
+    }
+}
+
+static void computing_beforehand_is_broken_off(void **state)
+{
+    (void)state;
+    for (int k = 0; k < LOSS_KINDS; k++) {
+        work w = begin_work((loss)k);
+        open_scene(&w);
+        w.phase = AG_PHASE_PRECOMPUTE;
+        w.settings.photon_count = 60000;
+        w.settings.cache = AG_CACHE_PRECOMPUTE;
+        w.is_armed = true;
+        ag_rendering *rendering = NULL;
+        assert_int_equal(ag_rendering_create(w.context, w.loaded, &w.settings, &rendering), AG_ERROR_SYSTEM);
+        assert_null(rendering);
+        assert_true(w.is_done);
+        assert_true(w.last_fraction < 1.0);
+        assert_told(&w);
+        assert_int_equal(unlink(w.map), 0);
+        assert_works_on(&w);
+        close_scene(&w);
     }
 }
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {TEST_IN_FOLDER(a_pass_is_broken_off)};
+    const struct CMUnitTest tests[] = {
+        TEST_IN_FOLDER(a_pass_is_broken_off), TEST_IN_FOLDER(the_picture_of_a_checkpoint_stays),
+        TEST_IN_FOLDER(no_checkpoint_of_a_lost_map), TEST_IN_FOLDER(computing_beforehand_is_broken_off)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

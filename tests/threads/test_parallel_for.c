@@ -15,6 +15,7 @@
 #include <math.h>
 #include <sched.h>
 #include <string.h>
+#include <time.h>
 
 static const unsigned worker_counts[] = {1, 2, 3, 8, 64};
 #define WORKER_COUNTS (sizeof worker_counts / sizeof worker_counts[0])
@@ -291,6 +292,61 @@ static void test_progress_is_rare(void **state)
     tear_down(&s);
 }
 
+/* --- what is watched --- */
+
+enum { WATCHED_BLOCKS = 4000, LOST_AT = 100 };
+typedef struct watched_thing {
+    atomic_u64 done, thorough, thorough_at_once, most_at_once;
+    bool is_lost_thoroughly; /* only a thorough look tells that it is lost */
+} watched_thing;
+
+static bool look_at_thing(const void *watched, bool thoroughly)
+{
+    watched_thing *t = (watched_thing *)(uintptr_t)watched;
+    bool is_lost = load_relaxed_u64(&t->done) >= LOST_AT;
+    if (!thoroughly)
+        return t->is_lost_thoroughly || !is_lost;
+    fetch_add_relaxed_u64(&t->thorough, 1);
+    uint64_t others = fetch_add_relaxed_u64(&t->thorough_at_once, 1);
+    if (others > load_relaxed_u64(&t->most_at_once))
+        store_relaxed_u64(&t->most_at_once, others);
+    fetch_add_relaxed_u64(&t->thorough_at_once, UINT64_MAX);
+    return !is_lost;
+}
+
+static void work_on_thing(void *user, uint64_t begin, uint64_t end, uint64_t block_index, unsigned worker_index)
+{
+    (void)begin, (void)end, (void)block_index, (void)worker_index;
+    watched_thing *t = user;
+    if (fetch_add_relaxed_u64(&t->done, 1) >= LOST_AT)
+        nanosleep(&(struct timespec){0, 2000000}, NULL); /* so that all of it would take seconds */
+}
+
+static void test_what_is_lost_breaks_a_phase_off(void **state)
+{
+    (void)state;
+    for (int thoroughly = 0; thoroughly < 2; thoroughly++)
+        for (size_t w = 0; w < WORKER_COUNTS; w++) {
+            surroundings s;
+            watched_thing thing = {.is_lost_thoroughly = thoroughly};
+            set_up(&s, worker_counts[w], NULL, NULL);
+            run_begin_watch(&s.run, look_at_thing, &thing);
+            double start = clock_seconds();
+            uint64_t blocks = WATCHED_BLOCKS * worker_counts[w];
+            assert_int_equal(parallel_for(&s.run, blocks, 1, work_on_thing, &thing, AG_PHASE_MAP, 0.0, 0.0),
+                             AG_CANCELLED);
+            assert_true(load_relaxed_u64(&thing.done) < blocks);
+            assert_true((double)load_relaxed_u64(&thing.thorough) <= 1.0 + 2.0 * (clock_seconds() - start));
+            assert_int_equal(load_relaxed_u64(&thing.most_at_once), 0);
+            assert_true(run_end_break(&s.run));
+            run_end_watch(&s.run);
+            assert_int_equal(parallel_for(&s.run, 2 * LOST_AT, 1, work_on_thing, &thing, AG_PHASE_MAP, 0.0, 0.0),
+                             AG_OK); /* nobody looks any more */
+            assert_false(run_end_break(&s.run));
+            tear_down(&s);
+        }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -301,6 +357,7 @@ int main(void)
         cmocka_unit_test(test_progress_of_parallel_for),
         cmocka_unit_test(test_progress_is_clamped_and_never_falls),
         cmocka_unit_test(test_progress_is_rare),
+        cmocka_unit_test(test_what_is_lost_breaks_a_phase_off),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -14,7 +14,8 @@ extern "C" {
  * owns the film. The scene may have been made with another context whose isa, color_config and working_space are the
  * same; no other thread uses that meanwhile. Errors: AG_ERROR_ARGUMENT (settings out of range; a scene of a context
  * with others), AG_ERROR_SCENE (no camera), AG_ERROR_INPUT (the photon map's file is refused), AG_ERROR_OUTPUT (that
- * file cannot be written), AG_ERROR_MEMORY, AG_CANCELLED. */
+ * file cannot be written), AG_ERROR_SYSTEM (that file was truncated or overwritten meanwhile), AG_ERROR_MEMORY,
+ * AG_CANCELLED. */
 AG_API ag_status ag_render(ag_context *context, const ag_scene *scene, const ag_render_settings *settings,
                            ag_film **out_film);
 
@@ -90,7 +91,8 @@ static inline ag_noise ag_rendering_noise(const ag_rendering *rendering)
 }
 
 /* Writes the samples so far to a file, atomically. Another process that creates the same rendering can read it and
- * continue to the same bits. Errors: AG_ERROR_MEMORY, AG_ERROR_OUTPUT. */
+ * continue to the same bits. Errors: AG_ERROR_MEMORY, AG_ERROR_OUTPUT, AG_ERROR_SYSTEM (the photon map's file was
+ * truncated or overwritten: nothing is written). */
 AG_API ag_status ag_rendering_write_checkpoint(const ag_rendering *rendering, const char *path);
 /* Reads a checkpoint; to be called before the first ag_rendering_continue. A file that is damaged, or of another scene,
  * other settings or another version is refused: the log says why, and the rendering stays as it was. Errors:
