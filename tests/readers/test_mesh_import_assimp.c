@@ -219,6 +219,56 @@ static void lamps_of_blenders_are_in_watts(void **state)
     reading_destroy(&r);
 }
 
+/* The fixture's file with its author, and with words about the surface behind its colour. */
+static reading surface_by(const char *author, const char *words)
+{
+    char text[8192], authored[8192];
+    snprintf(authored, sizeof authored,
+             COLLADA("<contributor><authoring_tool>%s</authoring_tool></contributor><up_axis>Y_UP</up_axis>", "",
+                     COLLADA_FLOOR),
+             author);
+    const char *behind = strstr(authored, "</lambert>");
+    assert_non_null(behind);
+    snprintf(text, sizeof text, "%.*s%s%s", (int)(behind - authored), authored, words, behind);
+    return model_of("a.dae", text);
+}
+
+#define IOR "<index_of_refraction><float>1.45</float></index_of_refraction>"
+
+/* Blender's Collada says neither roughness nor specular; of a principled material it says the index of refraction, and
+ * metallic as reflectivity. */
+static void principled_surfaces_of_blenders_shine(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *author, *words;
+        bool is_principled;
+        double metallic;
+    } CASES[] = {{"Blender 3.4.1", IOR, true, 0.0},
+                 {"Blender 3.4.1", "<reflectivity><float>0.25</float></reflectivity>" IOR, true, 0.25},
+                 {"Blender 3.4.1", "<reflectivity><float>0.5</float></reflectivity>", false, 0.0},
+                 {"Another 3.4.1", IOR, false, 0.0}};
+    for (size_t k = 0; k < sizeof CASES / sizeof CASES[0]; k++) {
+        reading r = surface_by(CASES[k].author, CASES[k].words);
+        assert_int_equal(r.status, AG_OK);
+        const material *m = model_material(&r, 0);
+        assert_int_equal(m->kind, CASES[k].is_principled ? MATERIAL_PRINCIPLED : MATERIAL_DIFFUSE);
+        assert_rgb(m->reflectance, .5, .25, .75, 1e-6);
+        if (CASES[k].is_principled) {
+            assert_near(m->metallic, CASES[k].metallic, 1e-6);
+            assert_near(m->roughness, 0.5, 1e-6);
+            assert_near(m->ior, 1.5, 1e-6);
+            model_said(
+                &r, AG_LOG_WARNING, "a.dae",
+                ": warning: Blender writes neither roughness nor specular to Collada files: both are taken to be "
+                "0.5, as in its new materials\n");
+        } else {
+            assert_true(!r.said[AG_LOG_WARNING] || !strstr(r.said[AG_LOG_WARNING], "roughness"));
+        }
+        reading_destroy(&r);
+    }
+}
+
 /* FBX: 100 W to the W, in cm unless UnitScaleFactor says otherwise. */
 #define FBX_LAMP(unit, kind, words)                                                                                     \
     "; FBX 7.4.0 project file\nFBXHeaderExtension: {\nFBXHeaderVersion: 1003\nFBXVersion: 7400\n"                       \
@@ -340,6 +390,7 @@ int main(void)
         TEST_IN_FOLDER(cameras_look_where_the_file_says),
         TEST_IN_FOLDER(lights_are_as_bright_as_the_file_says),
         TEST_IN_FOLDER(lamps_of_blenders_are_in_watts),
+        TEST_IN_FOLDER(principled_surfaces_of_blenders_shine),
         TEST_IN_FOLDER(lamps_of_blenders_fbx_are_in_watts),
         TEST_IN_FOLDER(what_assimp_refuses_is_an_error),
         TEST_IN_FOLDER(vertices_are_checked_here),

@@ -19,10 +19,11 @@ typedef struct assimp_writer {
     bool is_sound;            /* all could be written */
     bool is_blenders, is_fbx; /* the file is by Blender's exporter of Collada or FBX */
     bool has_dimming_spots;
-    float units_per_metre;  /* of such a one */
-    blender_lamps lamps;    /* of such a one, of Collada */
-    blender_shifts shifts;  /* of such a one */
-    bool has_plain_shining; /* a material shines */
+    float units_per_metre;    /* of such a one */
+    blender_lamps lamps;      /* of such a one, of Collada */
+    blender_shifts shifts;    /* of such a one */
+    bool has_plain_shining;   /* a material shines */
+    bool has_default_surface; /* a material's roughness and specular are not in the file, but known to be left out */
 } assimp_writer;
 
 /* Writes fail in silence, and is_sound tells. */

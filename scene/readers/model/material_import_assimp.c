@@ -73,13 +73,26 @@ static bool has_highlights(const struct aiMaterial *m)
 
 /* Blender's FBX exporter squeezes its principled material into Phong's words: specular is twice SpecularFactor and 0.08
  * of it is reflected at normal incidence, roughness is 1 - sqrt(Shininess) / 10, metallic ReflectionFactor. */
-static void restore_surface(const struct aiMaterial *m, import_material *out)
+static void restore_surface_of_fbx(const struct aiMaterial *m, import_material *out)
 {
     const double specular = 2.0 * (double)get_float(m, AI_MATKEY_SHININESS_STRENGTH, 0.25f);
     const double normal = sqrt(fmin(fmax(0.08 * specular, 1e-6), 0.9));
     out->metallic = fminf(fmaxf(get_float(m, AI_MATKEY_REFLECTIVITY, 0.0f), 0.0f), 1.0f);
     out->roughness = (float)fmax(1.0 - sqrt(fmax((double)out->exponent, 0.0)) / 10.0, 0.0);
     out->ior = (float)((1.0 + normal) / (1.0 - normal));
+}
+
+/* Blender's Collada exporter writes an index of refraction for principled materials alone, whose metallic it calls
+ * reflectivity; it leaves out specular and roughness, which have Blender's defaults here, 0.5 both: 0.04 is reflected
+ * at normal incidence. Returns whether this is such a one. */
+static bool restore_surface_of_collada(const struct aiMaterial *m, import_material *out)
+{
+    if (out->ior <= 0.0f || out->ior == 1.0f) /* assimp's, where the file has none */
+        return false;
+    out->metallic = fminf(fmaxf(get_float(m, AI_MATKEY_REFLECTIVITY, 0.0f), 0.0f), 1.0f);
+    out->roughness = 0.5f;
+    out->ior = 1.5f;
+    return true;
 }
 
 void assimp_write_material(assimp_writer *w, const struct aiMaterial *m)
@@ -121,11 +134,13 @@ void assimp_write_material(assimp_writer *w, const struct aiMaterial *m)
     out.clearcoat = get_float(m, AI_MATKEY_CLEARCOAT_FACTOR, 0.0f);
     out.clearcoat_roughness = get_float(m, AI_MATKEY_CLEARCOAT_ROUGHNESS_FACTOR, 0.0f);
     out.transmission = get_float(m, AI_MATKEY_TRANSMISSION_FACTOR, 0.0f);
+    const bool is_restored = w->is_blenders && !w->is_fbx && restore_surface_of_collada(m, &out);
+    w->has_default_surface |= is_restored;
     if (w->is_blenders && w->is_fbx)
-        restore_surface(m, &out);
+        restore_surface_of_fbx(m, &out);
     for (int slot = 0; slot < IMPORT_SLOT_COUNT; slot++)
         get_picture(w, m, TYPES[slot], &out.pictures[slot]);
-    if (w->is_blenders && w->is_fbx && out.pictures[IMPORT_COLOR].path[0] != '\0')
+    if (w->is_blenders && (w->is_fbx || is_restored) && out.pictures[IMPORT_COLOR].path[0] != '\0')
         out.diffuse = rgb_gray(1.0f); /* a socket's value, which the picture replaces */
     assimp_write_record(w, IMPORT_RECORD_MATERIAL, &out, sizeof out);
 }

@@ -188,6 +188,10 @@ static void write_scene(assimp_writer *w, const char *path)
         assimp_write_text(
             w, IMPORT_RECORD_WARNING,
             "Blender writes no strength of emission to Collada files: surfaces shine with 1 times their colour");
+    if (w->has_default_surface)
+        assimp_write_text(w, IMPORT_RECORD_WARNING,
+                          "Blender writes neither roughness nor specular to Collada files: both are taken to be 0.5, "
+                          "as in its new materials");
     for (unsigned k = 0; k < s->mNumMeshes; k++)
         write_mesh(w, s->mMeshes[k]);
     write_instances(w, s->mRootNode, root, 0);
