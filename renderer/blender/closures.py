@@ -72,6 +72,9 @@ def _maps(baker, node, path):
     if output is None:
         return {}
     tilt = output.node
+    if tilt.type == "NORMAL_MAP" and baker.atlas:
+        baker.graph.skip(tilt, "beside procedural textures the surface keeps its own normal")
+        return {}
     if tilt.type == "NORMAL_MAP" and tilt.space == "TANGENT":
         strength = float(baker.graph.number(tilt.inputs["Strength"], path))
         values = baker.bake(tilt.inputs["Color"], path, True)
@@ -104,7 +107,7 @@ def _constant(baker, node, name, path):
 def _say_left_out(baker, node, names, path):
     for name in names:
         if node.inputs[name].is_linked or float(np.mean(baker.bake(node.inputs[name], path, False))) > 1e-4:
-            baker.graph.notes.say(f'{baker.graph._name}: "{name}" of {node.bl_label} is not translated')
+            baker.graph.notes.say(f'{baker.graph.name}: "{name}" of {node.bl_label} is not translated')
 
 
 def _emission(baker, color, strength, path):
@@ -177,7 +180,7 @@ def _translucent(baker, node, path):
 def _transparent(baker, node, path):
     color = baker.bake(node.inputs["Color"], path, True)
     if (np.abs(color - 1) > 1e-3).any():
-        baker.graph.notes.say(f"{baker.graph._name}: a coloured Transparent BSDF is as clear as it is bright")
+        baker.graph.notes.say(f"{baker.graph.name}: a coloured Transparent BSDF is as clear as it is bright")
         return Surface(None, alpha=1 - np.clip(color.mean(axis=-1), 0, 1))
     return Surface(is_transparent=True)
 
@@ -288,6 +291,11 @@ def _hair(baker, node, path):
     return Surface("hair", made)
 
 
+def _holdout(baker, node, path):
+    baker.graph.skip(node, "it is black, and no hole in the picture")
+    return Surface()
+
+
 def _sheen(baker, node, path):
     return _subsurface(baker, node, path)
 
@@ -297,5 +305,5 @@ _SHADERS = {
     "BSDF_REFRACTION": _refraction, "BSDF_TRANSLUCENT": _translucent, "BSDF_TRANSPARENT": _transparent,
     "BSDF_ANISOTROPIC": _glossy, "BSDF_VELVET": _sheen, "BSDF_TOON": _sheen, "SUBSURFACE_SCATTERING": _subsurface,
     "BSDF_HAIR": _hair, "BSDF_HAIR_PRINCIPLED": _hair, "EMISSION": _shines,
-    "MIX_SHADER": _mix, "ADD_SHADER": _add, "HOLDOUT": lambda baker, node, path: Surface(),
+    "MIX_SHADER": _mix, "ADD_SHADER": _add, "HOLDOUT": _holdout,
 }

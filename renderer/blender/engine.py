@@ -127,9 +127,11 @@ class _Frame:
         own = self._settings
         seed = own.seed + (self._scene.frame_current if own.use_animated_seed else 0)
         made = {"size": f"{size[0]}x{size[1]}", "cropwindow": cameras.crop_window(border, size), "seed": seed,
-                "spp": own.samples, "noise": own.noise, "photons": own.photons, "caustic_photons": own.caustic_photons,
-                "radius": own.radius, "clamp_direct": own.clamp_direct, "clamp_indirect": own.clamp_indirect,
+                "spp": own.samples, "noise": own.noise, "radius": own.radius,
+                "clamp_direct": own.clamp_direct, "clamp_indirect": own.clamp_indirect,
                 "aov": passes.layers_of(self._passes, self._scene.render.film_transparent)}
+        if own.use_fixed_photons:
+            made.update(photons=own.photons, caustic_photons=own.caustic_photons)
         if own.gather_samples:
             made["gather_samples"] = own.gather_samples
         if own.use_path_tracing:

@@ -7,13 +7,15 @@ from collections import namedtuple
 import numpy as np
 
 from . import closures, pictures
+from .atlas import Atlas
 from .nodes import Graph, Sheet, source
 
 _SHEET_MOST = 4096
+IN_SPACE = "IN_SPACE"  # a layout: each part of a mesh has textures of its own (atlas.py)
 
-# What a mesh's part needs: the material's name, parameters of the shape (alpha), those of its light or None, and how its
-# pictures lie (meshes.py).
-Look = namedtuple("Look", "name shape light layout")
+# What a mesh's part needs: the material's name, parameters of the shape (alpha), those of its light or None, how its
+# pictures lie (meshes.py), and the medium within or None.
+Look = namedtuple("Look", "name shape light layout medium", defaults=(None,))
 
 
 class MaterialSheet(Sheet):
@@ -52,11 +54,12 @@ def _way_of(node):
 class Baker:
     """The values of one material: constants, or textures that are added to the scene."""
 
-    def __init__(self, scene, material, notes):
-        self.scene, self.name, self.notes = scene, material.name_full, notes
+    def __init__(self, scene, material, notes, name=None, atlas=None):
+        self.scene, self.name, self.notes = scene, name or material.name_full, notes
+        self.atlas, self._baked = atlas, {}
         self.graph = Graph(f'material "{material.name_full}"', notes)
         self.layout = None
-        self._way = {}
+        self._way = {"string wrap": "clamp", "string filter": "point" if atlas.is_coarse else "bilinear"} if atlas else {}
         self._made = {}
         self.count = 0
         self.surfaces, self.part_names = {}, {}  # of shaders, and of surfaces that a mix has (closures.py)
@@ -77,6 +80,9 @@ class Baker:
 
     def bake(self, socket, path, is_color, change=None):
         """A constant (3,) or (), or an array of the sheet's size; change: applied to what the sockets say."""
+        if self.atlas:
+            values = self._bake_in_space(socket, path, is_color)
+            return change(values) if change else values
         found = self.graph.pictures(socket, path)
         sheet = None
         if found:
@@ -85,6 +91,14 @@ class Baker:
             sheet = MaterialSheet(int(width), int(height), self.layout)
         values = (self.graph.color if is_color else self.graph.number)(socket, path, sheet)
         return change(values) if change else values
+
+    def _bake_in_space(self, socket, path, is_color):
+        key = socket.as_pointer(), path, is_color
+        if key not in self._baked:
+            sheet = self.atlas if self.graph.varies(socket, path) else None
+            values = (self.graph.color if is_color else self.graph.number)(socket, path, sheet)
+            self._baked[key] = self.atlas.spread(values) if values.ndim > (1 if is_color else 0) else values
+        return self._baked[key]
 
     def parameter(self, name, values, is_color, low=None, high=None):
         """{"rgb name": ...} of a constant, {"texture name": ...} of an array."""
@@ -109,7 +123,7 @@ class Baker:
     def direct_picture(self, socket, path, scale):
         """A colour socket that is a plain picture of 8 bits: its texture without a detour by floats."""
         output, _, _ = source(socket, path)
-        if output is None or output.node.type != "TEX_IMAGE" or output.name != "Color":
+        if self.atlas or output is None or output.node.type != "TEX_IMAGE" or output.name != "Color":
             return None
         image = output.node.image
         if not image or image.is_float or pictures.is_linear(image, self.notes):
@@ -148,13 +162,40 @@ class Baker:
 
 
 class Materials:
-    """The looks of the materials that meshes ask for, each made once. override: a material instead of all, or None."""
+    """The looks of the materials that meshes ask for, each made once. override: a material instead of all, or None.
+    pixels: the most of a part's textures that are made in space."""
 
-    def __init__(self, scene, notes, override):
-        self._scene, self._notes, self._override, self._looks = scene, notes, override, {}
+    def __init__(self, scene, notes, override, pixels):
+        self._scene, self._notes, self._override, self._pixels = scene, notes, override, pixels
+        self._looks, self._in_space, self._wants_space = {}, [], {}
 
     def names(self):
-        return [look.name for look in self._looks.values()]
+        return [look.name for look in self._looks.values()] + self._in_space
+
+    def look_of_mesh(self, material):
+        """As look, but of a material with procedural textures one whose layout is IN_SPACE; look_in_space has what its
+        parts want."""
+        material = self._override or material
+        if material is None or not material.use_nodes or not material.node_tree:
+            return self.look(material)
+        key = material.name_full
+        if key not in self._wants_space:
+            output = material.node_tree.get_output_node("CYCLES")
+            self._wants_space[key] = output is not None and Graph(key, self._notes).has_procedural(output.inputs["Surface"])
+        return Look(key, material, None, IN_SPACE) if self._wants_space[key] else self.look(material)
+
+    def look_in_space(self, look, part):
+        """The look of one part, and the part with coordinates by its atlas."""
+        atlas = Atlas(part.corners, self._pixels)
+        name = look.name
+        while name in self._in_space or name in self._looks:
+            name = f"{look.name}#{len(self._in_space)}"
+        self._in_space.append(name)
+        if atlas.is_coarse:
+            self._notes.say(f'material "{look.name}": on a mesh of so many triangles its textures have one colour for each')
+        baker = Baker(self._scene, look.shape, self._notes, name, atlas)
+        made = self._translate(baker, look.shape.node_tree.get_output_node("CYCLES"))
+        return made, part._replace(uvs=np.ascontiguousarray(atlas.uvs.reshape(-1, 2), np.float32), corners=None)
 
     def look(self, material):
         material = self._override or material
@@ -174,14 +215,31 @@ class Materials:
         if output is None:
             self._scene.material(baker.name, "diffuse", {"rgb reflectance": (0, 0, 0)})
             return Look(baker.name, {}, None, None)
-        for socket, what in ((output.inputs["Volume"], "volume"), (output.inputs["Displacement"], "displacement")):
-            if socket.is_linked:
-                self._notes.say(f'material "{baker.name}": its {what} is not translated')
         baker.look_for_layout(output.inputs["Surface"])
-        surface = closures.translate(baker, output.inputs["Surface"], ())
-        return self._finish(baker, surface)
+        return self._translate(baker, output)
 
-    def _finish(self, baker, surface):
+    def _translate(self, baker, output):
+        if output.inputs["Displacement"].is_linked:
+            self._notes.say(f"{baker.graph.name}: its displacement is not translated")
+        medium = self._make_medium(baker, output.inputs["Volume"])
+        surface = closures.translate(baker, output.inputs["Surface"], ())
+        return self._finish(baker, surface, medium)
+
+    def _make_medium(self, baker, socket):
+        output, _, path = source(socket, ())
+        if output is None:
+            return None
+        node = output.node
+        if node.type != "VOLUME_ABSORPTION":
+            self._notes.say(f"{baker.graph.name}: its volume is not translated")
+            return None
+        color = np.clip(baker.graph.color(node.inputs["Color"], path), 0, 1)
+        density = max(float(baker.graph.number(node.inputs["Density"], path)), 0.0)
+        name = f"{baker.name}|volume"
+        self._scene.medium(name, "homogeneous", {"rgb sigma_a": (1 - color) * density, "rgb sigma_s": (0, 0, 0)})
+        return name
+
+    def _finish(self, baker, surface, medium):
         closures.add_material(baker, baker.name, surface)
         shape, light = {}, None
         if surface.alpha is not None and (surface.alpha < 1).any():
@@ -192,7 +250,7 @@ class Materials:
             else:
                 light = {"string filename": baker.image(np.maximum(surface.emission, 0))}
             light["bool twosided"] = True
-        return Look(baker.name, shape, light, baker.layout)
+        return Look(baker.name, shape, light, baker.layout, medium)
 
 
 def roughness_squared(value):

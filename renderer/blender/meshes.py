@@ -5,7 +5,11 @@ from collections import namedtuple
 
 import numpy as np
 
-Part = namedtuple("Part", "slot positions triangles normals uvs")
+from .atlas import Corners
+from .materials import IN_SPACE
+
+# corners: of a part whose textures are made in space, else None.
+Part = namedtuple("Part", "slot positions triangles normals uvs corners", defaults=(None,))
 
 
 def _array(collection, name, width, dtype):
@@ -33,6 +37,11 @@ def _box(mesh, points, loop_count):
     return np.stack([np.where(np.choose(axis, [~is_ahead, is_ahead, is_ahead]), 1 - u, u), v], -1)
 
 
+def _generated(positions):
+    low, high = positions.min(axis=0), positions.max(axis=0)
+    return np.where(high > low, (positions - low) / np.maximum(high - low, 1e-30), 0.5)
+
+
 def _layout(mesh, how, positions, loop_vertices):
     """The coordinates of a material's pictures, of the loops; how: None, or as Graph.layout in nodes.py gives it."""
     if not how:
@@ -44,8 +53,7 @@ def _layout(mesh, how, positions, loop_vertices):
     else:
         space = positions
         if source == "GENERATED":
-            low, high = positions.min(axis=0), positions.max(axis=0)
-            space = np.where(high > low, (positions - low) / np.maximum(high - low, 1e-30), 0.5)
+            space = _generated(positions)
         space = space[loop_vertices]
     points = space @ matrix[:, :3].T + matrix[:, 3]
     points = _box(mesh, points, len(loop_vertices)) if projection == "BOX" else points[:, :2]
@@ -82,8 +90,19 @@ def _plain_normals(mesh, positions, loop_vertices, is_smooth):
     return np.where(is_smooth[face_of][:, None], smooth, faces[face_of]).astype(np.float32)
 
 
+def _part_in_space(mesh, slot, chosen, positions, loop_vertices, normals):
+    """No two triangles have a vertex in common."""
+    vertices = loop_vertices[chosen]
+    uvs = {layer.name: _array(layer.data, "uv", 2, np.float32)[chosen] for layer in mesh.uv_layers}
+    uvs[""] = _uvs(mesh, "")[chosen]
+    corners = Corners(positions[vertices], _generated(positions)[vertices], uvs)
+    return Part(int(slot), positions[vertices].reshape(-1, 3), np.arange(chosen.size, dtype=np.int32).reshape(-1, 3),
+                None if normals is None else normals[chosen].reshape(-1, 3), None, corners)
+
+
 def parts_of(mesh, layouts):
-    """The parts of an evaluated mesh. layouts: for each material slot how its pictures are laid out (see _layout)."""
+    """The parts of an evaluated mesh. layouts: for each material slot how its pictures are laid out (see _layout), or
+    IN_SPACE."""
     mesh.calc_loop_triangles()
     if not mesh.loop_triangles:
         return []
@@ -103,6 +122,9 @@ def parts_of(mesh, layouts):
     slots = np.clip(slots, 0, max(len(layouts) - 1, 0))
     for slot in np.unique(slots):
         chosen = triangles[slots == slot]
+        if layouts and layouts[slot] == IN_SPACE:
+            parts.append(_part_in_space(mesh, slot, chosen, positions, loop_vertices, normals))
+            continue
         uvs = _layout(mesh, layouts[slot] if layouts else None, positions, loop_vertices)
         if normals is None and uvs is None:
             used, indices = np.unique(loop_vertices[chosen], return_inverse=True)

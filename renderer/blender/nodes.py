@@ -3,7 +3,7 @@ picture coordinates. A colour is an array (..., 3), a number (...); both scene-l
 
 import numpy as np
 
-from . import node_math, pictures
+from . import node_math, pictures, procedural, procedural_nodes
 
 _LUMA = np.array([0.2126, 0.7152, 0.0722])
 _LIGHT_PATH = {"Is Camera Ray": 1.0}  # as the eye meets it; other kinds of rays see that, too
@@ -69,15 +69,28 @@ class Graph:
     """The node tree of one material, world or lamp."""
 
     def __init__(self, name, notes):
-        self._name = name
+        self.name = name
         self.notes = notes
         self._shared, self._depth = {}, 0  # values of outputs that are asked for more than once; how deep value is in itself
 
     def skip(self, node, stand_in):
-        self.notes.say(f'{self._name}: node "{node.bl_label}" is not translated: {stand_in}')
+        self.notes.say(f'{self.name}: node "{node.bl_label}" is not translated: {stand_in}')
 
     def pictures(self, socket, path=()):
         """The image nodes behind a socket, with the groups that they are in."""
+        return [(node, inside) for node, inside in self._behind(socket, path) if node.type == "TEX_IMAGE" and node.image]
+
+    def has_procedural(self, socket):
+        """Whether there is what wants the places of the surface: a procedural texture that is translated."""
+        return any(node.type in procedural.NODES for node, _ in self._behind(socket, ()))
+
+    def varies(self, socket, path):
+        """Whether a socket may say something else elsewhere on the surface."""
+        return any(node.type in procedural.NODES or node.type in ("TEX_IMAGE", "TEX_COORD", "UVMAP")
+                   for node, _ in self._behind(socket, path))
+
+    def _behind(self, socket, path):
+        """The nodes behind a socket, with the groups that they are in; not those that place a picture."""
         found, seen, open_sockets = [], set(), [(socket, path)]
         while open_sockets:
             output, _, inside = source(*open_sockets.pop())
@@ -85,9 +98,8 @@ class Graph:
                 continue
             node = output.node
             seen.add((node.as_pointer(), inside))
-            if node.type == "TEX_IMAGE" and node.image:
-                found.append((node, inside))
-            elif node.type not in ("TEX_ENVIRONMENT", "TEX_COORD", "UVMAP"):
+            found.append((node, inside))
+            if node.type not in ("TEX_ENVIRONMENT", "TEX_COORD", "UVMAP") and not (node.type == "TEX_IMAGE" and node.image):
                 open_sockets += [(s, inside) for s in node.inputs if s.enabled]
         return found
 
@@ -112,10 +124,10 @@ class Graph:
                 self.skip(inner, "pictures lie by the uv map")
         projection = getattr(node, "projection", "FLAT")
         if projection not in ("FLAT", "BOX"):
-            self.notes.say(f'{self._name}: a picture lies flat here, by no "{projection.lower()}"')
+            self.notes.say(f'{self.name}: a picture lies flat here, by no "{projection.lower()}"')
             projection = "FLAT"
         if projection == "BOX" and node.projection_blend > 0:
-            self.notes.say(f"{self._name}: the sides of a picture's box are not blended")
+            self.notes.say(f"{self.name}: the sides of a picture's box are not blended")
         return (*where, projection), matrix[:3]
 
     def constant(self, socket, path):
@@ -128,6 +140,12 @@ class Graph:
         output = source(socket, path)[0]
         return np.asarray(as_number(*self.value(socket, path, sheet), output is not None and output.type == "VECTOR"),
                           np.float64)
+
+    def vector(self, socket, path, sheet, otherwise):
+        """Of an Atlas, (n, 3); otherwise: the coordinates where nothing is linked."""
+        if source(socket, path)[0] is None:
+            return sheet.coordinates(otherwise)
+        return np.broadcast_to(self.color(socket, path, sheet), sheet.coordinates("OBJECT").shape)
 
     def value(self, socket, path, sheet):
         """A value, and whether it is a colour or vector."""
@@ -162,6 +180,10 @@ class Graph:
         if kind == "LIGHT_PATH":
             self.skip(node, "all rays see what the camera's do")
             return np.float64(_LIGHT_PATH.get(output.name, 0.0)), False
+        if hasattr(sheet, "coordinates"):
+            made = self._evaluate_in_space(node, output, path, sheet)
+            if made is not None:
+                return made
         made = node_math.evaluate(self, node, output, path, sheet)
         if made is not None:
             return made
@@ -174,13 +196,34 @@ class Graph:
         self.skip(node, "0.5 stands in" if kind.startswith("TEX_") else "0 stands in")
         return np.float64(0.5 if kind.startswith("TEX_") else 0.0), False
 
+    def _evaluate_in_space(self, node, output, path, sheet):
+        """What an Atlas knows, and no other sheet; None: nothing of it."""
+        if node.type in procedural.NODES:
+            return procedural_nodes.evaluate(self, node, output, path, sheet)
+        if node.type == "UVMAP":
+            return sheet.coordinates("UV", node.uv_map), True
+        if node.type == "TEX_COORD" and output.name in ("UV", "Generated", "Object"):
+            if node.object:
+                self.skip(node, "another object's coordinates are its own")
+            return sheet.coordinates(output.name.upper()), True
+        if node.type == "MAPPING":
+            matrix = node_math.mapping_matrix(node, lambda s: self.constant(s, path), self)
+            return self.vector(node.inputs["Vector"], path, sheet, "OBJECT") @ matrix[:3, :3].T + matrix[:3, 3], True
+        return None
+
+    def _points_of_picture(self, node, path, sheet):
+        if hasattr(sheet, "coordinates"):
+            if node.projection != "FLAT":
+                self.skip(node, "beside procedural textures it lies flat")
+            return self.vector(node.inputs["Vector"], path, sheet, "UV")[:, :2]
+        matrix = sheet.relative(self.layout(node, path)) if hasattr(sheet, "relative") else None
+        return sheet.points if matrix is None else sheet.points @ matrix[:, :2].T + matrix[:, 2]
+
     def _picture(self, node, output, path, sheet):
         if not node.image or sheet is None:
             if node.image:
                 self.skip(node, "of a constant its colour is magenta, and its alpha 1")
             return (np.array([1.0, 0.0, 1.0]), True) if output.name == "Color" else (np.float64(1.0), False)
         pixels = pictures.linear_pixels(node.image, self.notes)
-        matrix = sheet.relative(self.layout(node, path)) if hasattr(sheet, "relative") else None
-        points = sheet.points if matrix is None else sheet.points @ matrix[:, :2].T + matrix[:, 2]
-        sampled = pictures.sample(pixels, points, node.extension, node.interpolation == "Closest")
+        sampled = pictures.sample(pixels, self._points_of_picture(node, path, sheet), node.extension, node.interpolation == "Closest")
         return (sampled[..., :3], True) if output.name == "Color" else (sampled[..., 3], False)

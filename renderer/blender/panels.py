@@ -33,9 +33,13 @@ class AFTERGLOW_PT_light(_RenderPanel, bpy.types.Panel):
     bl_label = "Light"
 
     def draw(self, context):
-        _props(self.layout, context.scene.afterglow, (
-            "photons", "caustic_photons", "radius", "gather_samples", "clamp_direct", "clamp_indirect",
-            "photon_map", "use_path_tracing"))
+        own = context.scene.afterglow
+        _props(self.layout, own, ("use_fixed_photons",))
+        numbers = self.layout.column()
+        numbers.active = own.use_fixed_photons
+        _props(numbers, own, ("photons", "caustic_photons"))
+        _props(self.layout, own, ("radius", "gather_samples", "clamp_direct", "clamp_indirect", "photon_map",
+                                  "use_path_tracing"))
 
 
 class AFTERGLOW_PT_passes(_RenderPanel, bpy.types.Panel):

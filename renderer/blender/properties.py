@@ -13,6 +13,9 @@ class AfterglowSceneSettings(bpy.types.PropertyGroup):
     seed: IntProperty(name="Seed", min=0, default=0, description="Of all random numbers")
     use_animated_seed: BoolProperty(name="Animate Seed", default=True,
                                     description="The frame's number is added to the seed, so that noise does not stand still")
+    use_fixed_photons: BoolProperty(name="Fixed Photons", default=False,
+                                    description="As many as are told below, whatever the picture; else as many as its "
+                                                "samples can show")
     photons: IntProperty(name="Photons", min=1, default=1000000, description="To be stored in the global map")
     caustic_photons: IntProperty(name="Caustic Photons", min=0, default=500000,
                                  description="To be stored in the caustic map, where anything is specular")

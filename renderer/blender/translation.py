@@ -5,9 +5,10 @@ import itertools
 import numpy as np
 
 from . import cameras, hair, lamps, meshes, worlds
-from .materials import Materials
+from .materials import IN_SPACE, Materials
 from .passes import group_of
 
+_PIXELS_IN_SPACE, _PIXELS_IN_VIEW = 1 << 20, 1 << 16  # of a mesh's textures that are computed place by place
 _SURFACES = {"MESH", "CURVE", "SURFACE", "FONT", "META"}
 
 
@@ -20,7 +21,18 @@ class _Model:
 
 def _look_list(owner, materials):
     slots = [slot.material for slot in owner.material_slots] or [None]
-    return [materials.look(material) for material in slots]
+    return [materials.look_of_mesh(material) for material in slots]
+
+
+def _has_generated(look):
+    return look.layout == IN_SPACE or (look.layout is not None and look.layout[0][0] == "GENERATED")
+
+
+def _make_in_space(parts, looks, materials):
+    """Looks of its own for each part that wants them, in place."""
+    for k, part in enumerate(parts):
+        if part.corners is not None:
+            looks[part.slot], parts[k] = materials.look_in_space(looks[part.slot], part)
 
 
 def _model(instance_object, materials, name, notes):
@@ -36,12 +48,13 @@ def _model(instance_object, materials, name, notes):
         parts = meshes.parts_of(mesh, [look.layout for look in looks])
     finally:
         instance_object.to_mesh_clear()
-    if any(look.layout and look.layout[0][0] == "GENERATED" for look in looks) and instance_object.modifiers:
+    if any(_has_generated(look) for look in looks) and instance_object.modifiers:
         notes.say(f'object "{instance_object.name}": Generated coordinates are those after its modifiers')
     bad = [part for part in parts if not np.isfinite(part.positions).all()]
     if bad:
         notes.say(f'object "{instance_object.name}": vertices that are not finite are left out with their material')
         parts = [part for part in parts if np.isfinite(part.positions).all()]
+    _make_in_space(parts, looks, materials)
     return _Model(name, parts, looks, group_of(instance_object))
 
 
@@ -71,7 +84,7 @@ def _add_part(scene, model, part, **where):
     if light is not None:
         light = {**light, **model.group}
     scene.shape("trianglemesh", {**meshes.parameters_of(part), **look.shape, "string name": model.name},
-                material=look.name, light=light, **where)
+                material=look.name, light=light, medium_inside=look.medium, **where)
 
 
 def _is_flat(matrix):
@@ -112,7 +125,8 @@ def translate(scene, depsgraph, motion, notes, poll, view=None, is_by_name=False
         raise RuntimeError("the scene has no camera")
     else:
         cameras.add_camera(scene, blender_scene.camera.evaluated_get(depsgraph), blender_scene.render, motion, notes)
-    materials, models = Materials(scene, notes, layer.material_override), {}
+    materials = Materials(scene, notes, layer.material_override, _PIXELS_IN_VIEW if view else _PIXELS_IN_SPACE)
+    models = {}
     taken, hairy = set(), set()  # names of models; of what has hair
     for instance in depsgraph.object_instances:
         poll()

@@ -36,9 +36,9 @@ class Viewport:
         self._stop()
         self._close_scene()
         own = depsgraph.scene_eval.afterglow
+        fixed = (own.photons, own.caustic_photons) if own.use_fixed_photons else 2 * (_PHOTONS_MOST,)
         self._settings = {"spp": own.samples, "noise": own.noise, "seed": own.seed, "radius": own.radius,
-                          "photons": min(own.photons, _PHOTONS_MOST),
-                          "caustic_photons": min(own.caustic_photons, _PHOTONS_MOST),
+                          "photons": min(fixed[0], _PHOTONS_MOST), "caustic_photons": min(fixed[1], _PHOTONS_MOST),
                           "photon_map": os.path.join(self._folder.name, "photons.map"), "photon_map_refresh": True}
         self._scene = self._context.scene()
         try:

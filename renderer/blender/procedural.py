@@ -1,0 +1,222 @@
+"""Blender's procedural textures at points in space, as Cycles computes them: arrays (n, 3) to arrays (n,) and (n, 3)."""
+
+import itertools
+
+import numpy as np
+
+NODES = {"TEX_NOISE", "TEX_CHECKER", "TEX_BRICK", "TEX_WAVE", "TEX_GRADIENT", "TEX_VORONOI", "TEX_MUSGRAVE"}
+_NEARLY = 0.000001  # so that faces on a whole number belong to one side
+_SMALLEST = 1e-5
+
+
+def _turn(x, k):
+    return (x << np.uint32(k)) | (x >> np.uint32(32 - k))
+
+
+def hash_words(words):
+    """Jenkins' lookup3 of one to four arrays of 32-bit words."""
+    begun = np.uint32((0xdeadbeef + (len(words) << 2) + 13) & 0xffffffff)
+    state = [begun + np.asarray(word, np.uint32) for word in words[:3]]
+    a, b, c = state + [np.full_like(state[0], begun)] * (3 - len(state))
+    if len(words) == 4:
+        a -= c; a ^= _turn(c, 4); c = c + b
+        b = b - a; b ^= _turn(a, 6); a = a + c
+        c = c - b; c ^= _turn(b, 8); b = b + a
+        a = a - c; a ^= _turn(c, 16); c = c + b
+        b = b - a; b ^= _turn(a, 19); a = a + c
+        c = c - b; c ^= _turn(b, 4); b = b + a
+        a = a + np.asarray(words[3], np.uint32)
+    c = (c ^ b) - _turn(b, 14)
+    a = (a ^ c) - _turn(c, 11)
+    b = (b ^ a) - _turn(a, 25)
+    c = (c ^ b) - _turn(b, 16)
+    a = (a ^ c) - _turn(c, 4)
+    b = (b ^ a) - _turn(a, 14)
+    return (c ^ b) - _turn(b, 24)
+
+
+def _hash_numbers(numbers):
+    """In [0, 1], of the bits of one to four arrays of floats."""
+    shape = np.broadcast(*numbers).shape or (1,)
+    words = [np.broadcast_to(np.asarray(number, np.float32), shape).copy().view(np.uint32) for number in numbers]
+    return hash_words(words).astype(np.float64) / 0xffffffff
+
+
+def _slope(word, x, y, z):
+    """Perlin's gradient of that hash, times a vector."""
+    h = word & np.uint32(15)
+    u = np.where(h < 8, x, y)
+    v = np.where(h < 4, y, np.where((h == 12) | (h == 14), x, z))
+    return np.where(h & np.uint32(1), -u, u) + np.where(h & np.uint32(2), -v, v)
+
+
+def _slope_flat(word, x, y):
+    h = word & np.uint32(7)
+    u, v = np.where(h < 4, x, y), 2 * np.where(h < 4, y, x)
+    return np.where(h & np.uint32(1), -u, u) + np.where(h & np.uint32(2), -v, v)
+
+
+def signed_noise(points):
+    """Perlin's, about in [-1, 1], of two or three dimensions: the length of the last axis."""
+    dimensions = points.shape[-1]
+    cell = np.floor(points)
+    part = points - cell
+    words = cell.astype(np.int64).astype(np.uint32)
+    fade = part ** 3 * (part * (part * 6 - 15) + 10)
+    total = np.zeros(points.shape[:-1])
+    for corner in itertools.product((0, 1), repeat=dimensions):
+        word = hash_words([words[..., k] + np.uint32(corner[k]) for k in range(dimensions)])
+        weight = np.prod([fade[..., k] if corner[k] else 1 - fade[..., k] for k in range(dimensions)], axis=0)
+        away = [part[..., k] - corner[k] for k in range(dimensions)]
+        total += weight * (_slope if dimensions == 3 else _slope_flat)(word, *away)
+    return total * (0.9820 if dimensions == 3 else 0.6616)
+
+
+def fractal(points, detail, roughness):
+    """Octaves of noise in [0, 1], brought to the same."""
+    detail = min(max(float(detail), 0.0), 15.0)
+    total, weights, weight, scale = 0.0, 0.0, 1.0, 1.0
+    for _ in range(int(detail) + 1):
+        total = total + weight * (0.5 * signed_noise(points * scale) + 0.5)
+        weights += weight
+        weight *= min(max(float(roughness), 0.0), 1.0)
+        scale *= 2
+    rest = detail - int(detail)
+    if rest == 0:
+        return total / weights
+    more = total + weight * (0.5 * signed_noise(points * scale) + 0.5)
+    return (1 - rest) * total / weights + rest * more / (weights + weight)
+
+
+def _offset(seed, dimensions):
+    return np.array([100 + 100 * _hash_numbers([seed, float(k)])[0] for k in range(dimensions)])
+
+
+def noise(points, detail, roughness, distortion, is_color):
+    dimensions = points.shape[-1]
+    if distortion:
+        points = points + distortion * np.stack(
+            [signed_noise(points + _offset(float(k), dimensions)) for k in range(dimensions)], -1)
+    value = fractal(points, detail, roughness)
+    if not is_color:
+        return value
+    return np.stack([value] + [fractal(points + _offset(float(dimensions + k), dimensions), detail, roughness)
+                               for k in (0, 1)], -1)
+
+
+def musgrave(points, kind, dimension, lacunarity, detail):
+    detail, lacunarity = min(max(float(detail), 0.0), 15.0), max(float(lacunarity), _SMALLEST)
+    fall, power = lacunarity ** -max(float(dimension), _SMALLEST), 1.0
+    is_sum = kind == "FBM"
+    value = np.zeros(points.shape[:-1]) if is_sum else np.ones(points.shape[:-1])
+    for share in [1.0] * int(detail) + [detail - int(detail)]:
+        if share:
+            octave = share * power * signed_noise(points)
+            value = value + octave if is_sum else value * (octave + 1)
+            power, points = power * fall, points * lacunarity
+    return value
+
+
+def checker(points):
+    """Whether the first colour counts."""
+    at = np.abs(np.floor((points + _NEARLY) * (1 - _NEARLY))).astype(np.int64) % 2
+    return (at[..., 0] == at[..., 1]) == (at[..., 2] == 1)
+
+
+def wave(points, kind, direction, profile, distortion, detail, detail_scale, roughness, phase):
+    points = (points + _NEARLY) * (1 - _NEARLY)
+    axis = "XYZ".find(direction)
+    if kind == "BANDS":
+        at = 20 * points[..., axis] if axis >= 0 else 10 * points.sum(axis=-1)
+    else:
+        kept = [k for k in range(3) if k != axis]
+        at = 20 * np.linalg.norm(points[..., kept], axis=-1)
+    at = at + phase
+    if distortion:
+        at = at + distortion * (2 * fractal(points * detail_scale, detail, roughness) - 1)
+    if profile == "SIN":
+        return 0.5 + 0.5 * np.sin(at - 0.5 * np.pi)
+    at = at / (2 * np.pi)
+    return at - np.floor(at) if profile == "SAW" else 2 * np.abs(at - np.floor(at + 0.5))
+
+
+def gradient(points, kind):
+    x, y, _ = (points[..., k] for k in range(3))
+    if kind in ("SPHERICAL", "QUADRATIC_SPHERE"):
+        made = np.maximum(0.999999 - np.linalg.norm(points, axis=-1), 0)
+        return made if kind == "SPHERICAL" else made * made
+    if kind == "EASING":
+        x = np.clip(x, 0, 1)
+        return x * x * (3 - 2 * x)
+    made = {"QUADRATIC": lambda: np.maximum(x, 0) ** 2, "DIAGONAL": lambda: 0.5 * (x + y),
+            "RADIAL": lambda: np.arctan2(y, x) / (2 * np.pi) + 0.5}.get(kind, lambda: x)()
+    return np.clip(made, 0, 1)
+
+
+def _brick_chance(number):
+    n = (number + 1013) & 0x7fffffff
+    n = (n >> 13) ^ n
+    n = n.astype(np.uint64).astype(np.uint32)
+    made = (n * (n * n * np.uint32(60493) + np.uint32(19990303)) + np.uint32(1376312589)) & np.uint32(0x7fffffff)
+    return 0.5 * made / 1073741824.0
+
+
+def brick(points, size, smooth, bias, width, height, offset, offset_rows, squash, squash_rows):
+    """How much a point is in the mortar, and how much its brick has the second colour."""
+    x, y = points[..., 0], points[..., 1]
+    row = np.floor(y / height).astype(np.int64)
+    widths, shift = np.full(x.shape, width), np.zeros(x.shape)
+    if offset_rows and squash_rows:
+        widths = np.where(row % squash_rows != 0, width, width * squash)
+        shift = np.where(row % offset_rows != 0, 0.0, widths * offset)
+    number = np.floor((x + shift) / widths).astype(np.int64)
+    across, up = x + shift - widths * number, y - height * row
+    tint = np.clip(_brick_chance((row << 16) + (number & 0xffff)) + bias, 0, 1)
+    near = np.minimum(np.minimum(across, up), np.minimum(widths - across, height - up))
+    inside = np.clip((1 - near / max(size, 1e-12)) / smooth, 0, 1) if smooth > 0 else np.ones(x.shape)
+    return np.where(near >= size, 0.0, inside * inside * (3 - 2 * inside)), tint
+
+
+_DISTANCES = {"MANHATTAN": lambda d: np.abs(d).sum(axis=-1), "CHEBYCHEV": lambda d: np.abs(d).max(axis=-1)}
+
+
+def _jitter(cell):
+    """Where a cell's point is in it, of two or three dimensions."""
+    axes = [cell[..., k] for k in range(cell.shape[-1])]
+    return np.stack([_hash_numbers(axes + ([float(k)] if k else [])) for k in range(cell.shape[-1])], -1)
+
+
+def voronoi(points, feature, metric, randomness):
+    """Distance, and the cell whose colour counts; feature: F1, F2 or DISTANCE_TO_EDGE."""
+    dimensions = points.shape[-1]
+    measure = _DISTANCES.get(metric, lambda d: np.linalg.norm(d, axis=-1))
+    cell = np.floor(points)
+    part = points - cell
+    first, second = np.full(points.shape[:-1], 8.0), np.full(points.shape[:-1], 8.0)
+    of_first, of_second, nearest = cell.copy(), cell.copy(), np.zeros(points.shape)
+    steps = [np.array(step, np.float64) for step in itertools.product((-1, 0, 1), repeat=dimensions)]
+    away = [step + randomness * _jitter(cell + step) - part for step in steps]
+    for step, one in zip(steps, away):
+        far = np.linalg.norm(one, axis=-1) if feature == "DISTANCE_TO_EDGE" else measure(one)
+        is_first, is_second = far < first, (far < second) & (far >= first)
+        of_second = np.where(is_first[..., None], of_first, np.where(is_second[..., None], cell + step, of_second))
+        second = np.where(is_first, first, np.where(is_second, far, second))
+        of_first = np.where(is_first[..., None], cell + step, of_first)
+        nearest = np.where(is_first[..., None], one, nearest)
+        first = np.where(is_first, far, first)
+    if feature == "F1":
+        return first, of_first
+    if feature == "F2":
+        return second, of_second
+    edge = np.full(points.shape[:-1], 8.0)
+    for one in away:
+        between = one - nearest
+        length = np.linalg.norm(between, axis=-1)
+        distance = ((one + nearest) / 2 * between).sum(axis=-1) / np.maximum(length, 1e-12)
+        edge = np.where(length > 1e-2, np.minimum(edge, distance), edge)
+    return edge, of_first
+
+
+def cell_color(cell):
+    axes = [cell[..., k] for k in range(cell.shape[-1])]
+    return np.stack([_hash_numbers(axes + ([float(k)] if k else [])) for k in range(3)], -1)
