@@ -44,6 +44,19 @@ static void free_confinement(ag_context *c)
     free(c->confined_to);
 }
 
+static void tell_too_many_threads(log_sink *log, unsigned thread_count)
+{
+    if (thread_count > 0)
+        log_message(log, AG_LOG_ERROR,
+                    "the system does not give this process %u threads: try fewer, or higher limits "
+                    "of processes and memory",
+                    thread_count);
+    else
+        log_message(log, AG_LOG_ERROR,
+                    "the system does not give this process a thread for each processor: try fewer, "
+                    "or higher limits of processes and memory");
+}
+
 ag_status ag_context_create(const ag_context_settings *settings, ag_context **out_context)
 {
     static const char *const known_isas[] = {"sse2", "sse4.2", "avx", "avx2", "avx512"};
@@ -74,6 +87,8 @@ ag_status ag_context_create(const ag_context_settings *settings, ag_context **ou
     c->log = log_create(settings->log, settings->user);
     if (c->log && is_copied)
         status = thread_pool_create(settings->thread_count, &c->pool);
+    if (status == AG_ERROR_SYSTEM)
+        tell_too_many_threads(c->log, settings->thread_count);
     if (status != AG_OK) {
         log_destroy(c->log);
         free(c->color_config_path);

@@ -259,7 +259,8 @@ static ag_status run_in_context(options *o, int frame, progress *told, ag_contex
     ag_context *context;
     ag_status status = ag_context_create(&o->context, &context);
     if (status != AG_OK) {
-        fprintf(stderr, "afterglow: error: %s\n", ag_status_text(status));
+        if (status != AG_ERROR_SYSTEM) /* which the log has told */
+            fprintf(stderr, "afterglow: error: %s\n", ag_status_text(status));
         return status;
     }
     if (in_out_last) {

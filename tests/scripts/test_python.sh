@@ -146,6 +146,22 @@ fi
 check_readme_python
 echo "ok: README"
 
+"$python" - <<'END' || fail "too many threads are not told"
+import resource
+import afterglow
+
+with open("/proc/self/statm") as file:
+    limit = int(file.read().split()[0]) * resource.getpagesize() + (64 << 20)
+resource.setrlimit(resource.RLIMIT_AS, (limit, limit))
+try:
+    afterglow.Context(threads=1000)
+except afterglow.Error as error:
+    assert "1000 threads" in str(error) and "limits" in str(error), error
+else:
+    raise AssertionError("a thousand threads in 64 MB")
+END
+echo "ok: too many threads"
+
 cat >scene.pbrt <<'END'
 Transform [1 0 0 0  0 1 0 0  0 0 1 0  0 0 3 1] Camera "perspective" "float fov" 60
 WorldBegin

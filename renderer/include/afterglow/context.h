@@ -37,7 +37,8 @@ typedef struct ag_context_settings {
 
 AG_DEFAULT_STRUCT(context_settings, AG_STRUCT_CONTEXT_SETTINGS)
 /* Copies the settings; NULL: the defaults. Errors: AG_ERROR_ARGUMENT (isa is not known; or struct_size is not the
- * library's, where nothing is logged, since the log member may be misplaced), AG_ERROR_MEMORY, AG_ERROR_SYSTEM. */
+ * library's, where nothing is logged, since the log member may be misplaced), AG_ERROR_MEMORY, AG_ERROR_SYSTEM (so many
+ * threads cannot be had, as the log says). */
 AG_API ag_status ag_context_create(const ag_context_settings *settings, ag_context **out_context);
 /* To be called after everything that was made with it has been destroyed; NULL is fine. Where scenes are left, the log
  * says so, for the last time; the context is then cancelled for good, and freed with the last of its scenes. */
