@@ -51,6 +51,8 @@ static void ten_thousand_edits_leave_no_memory_behind(void **state)
         if (when >= 0 && used < least[when])
             least[when] = used;
     }
+    print_message("of %d edits the first fifth left %zu bytes in use at the least, the last %zu\n", EDITS, least[0],
+                  least[1]);
     if (least[1] > least[0] + 16 * 1024)
         fail_msg("%zu bytes were in use, and %zu are", least[0], least[1]);
     end(&d);
