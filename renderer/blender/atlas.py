@@ -7,7 +7,8 @@ import numpy as np
 
 from .nodes import Sheet
 
-_TRIANGLES_MOST = 65536  # with more, each has one pixel
+_TRIANGLES_MOST = 32768  # with more, each has one pixel
+_PIXELS_OF_TRIANGLE = 32  # with fewer there is hardly anything within a patch's border
 _INSET = 1.5  # pixels from a patch's side to its triangle
 _SIDE_MOST = 4000
 
@@ -48,12 +49,14 @@ def _pack(widths, heights):
 
 
 class Atlas(Sheet):
-    """As a sheet: its values are those of the pixels that triangles meet, in one row, until they are spread."""
+    """As a sheet: its values are those of the pixels that triangles meet, in one row, until they are spread. kept: of a
+    material's procedural textures, which colour and relief often share."""
 
     def __init__(self, corners, pixels):
+        self.kept = {}
         self._corners = corners
         count = len(corners.positions)
-        self.is_coarse = count > min(_TRIANGLES_MOST, pixels // 16)
+        self.is_coarse = count > _TRIANGLES_MOST
         if self.is_coarse:
             self.width = int(np.ceil(np.sqrt(count)))
             self.height = -(-count // self.width)
@@ -63,7 +66,7 @@ class Atlas(Sheet):
             centre = np.stack([(self._at % self.width + 0.5) / self.width, (self._at // self.width + 0.5) / self.height], -1)
             self.uvs = np.repeat(centre[:, None], 3, axis=1)
         else:
-            self._lay_out(pixels)
+            self._lay_out(max(pixels, _PIXELS_OF_TRIANGLE * count))
 
     def _lay_out(self, pixels):
         first, length, tip, height, scale = _patches(self._corners.positions.astype(np.float64), pixels)

@@ -1,6 +1,7 @@
 """Blender's camera as the renderer's. The field of view is 90 degrees always, and the screen window says the rest: its
 numbers are tangents then, or for a parallel projection lengths."""
 
+import math
 from collections import namedtuple
 
 import numpy as np
@@ -8,6 +9,7 @@ import numpy as np
 # A camera of a 3D view: kind, screen window (x0, x1, y0, y1), matrix row by row, (width, height); as tuples, to compare.
 View = namedtuple("View", "kind window world_from_camera size")
 
+_NEAREST_M, _NEAREST_ANYWHERE_M = 0.1, 0.5  # that a picture's sharpness is thought of
 _FLIPPED_Z = np.diag([1.0, 1.0, -1.0, 1.0])  # Blender's cameras look along -z, the renderer's along +z
 
 
@@ -120,3 +122,15 @@ def add_camera(scene, camera_object, render, motion, notes, engine=None):
         if camera.dof.aperture_blades or camera.dof.aperture_ratio != 1:
             notes.say(f'camera "{camera_object.name}": its aperture is round here')
     scene.camera(kind, parameters, world_from_camera=world_from_camera, world_from_camera_end=world_from_camera_end)
+
+
+def pixels_of_unit(camera, size, matrix, positions, is_anywhere):
+    """About how many pixels of the picture a unit of a mesh's length has where it is nearest to the camera; is_anywhere:
+    it stands in other places too, which may be nearer."""
+    stretch, data = abs(np.linalg.det(matrix[:3, :3])) ** (1 / 3), camera.data
+    if data.type == "ORTHO":
+        return stretch * max(size) / max(data.ortho_scale, 1e-6)
+    points, eye = positions @ matrix[:3, :3].T + matrix[:3, 3], np.array(camera.matrix_world.translation)
+    away = np.maximum(np.maximum(points.min(axis=0) - eye, eye - points.max(axis=0)), 0)
+    distance = _NEAREST_ANYWHERE_M if is_anywhere else max(float(np.linalg.norm(away)), _NEAREST_M)
+    return stretch * max(size) / (2 * math.tan(min(data.angle, 3.0) / 2) * distance)

@@ -162,11 +162,10 @@ class Baker:
 
 
 class Materials:
-    """The looks of the materials that meshes ask for, each made once. override: a material instead of all, or None.
-    pixels: the most of a part's textures that are made in space."""
+    """The looks of the materials that meshes ask for, each made once. override: a material instead of all, or None."""
 
-    def __init__(self, scene, notes, override, pixels):
-        self._scene, self._notes, self._override, self._pixels = scene, notes, override, pixels
+    def __init__(self, scene, notes, override):
+        self._scene, self._notes, self._override = scene, notes, override
         self._looks, self._in_space, self._wants_space = {}, [], {}
 
     def names(self):
@@ -184,9 +183,9 @@ class Materials:
             self._wants_space[key] = output is not None and Graph(key, self._notes).has_procedural(output.inputs["Surface"])
         return Look(key, material, None, IN_SPACE) if self._wants_space[key] else self.look(material)
 
-    def look_in_space(self, look, part):
-        """The look of one part, and the part with coordinates by its atlas."""
-        atlas = Atlas(part.corners, self._pixels)
+    def look_in_space(self, look, part, pixels):
+        """The look of one part, and the part with coordinates by its atlas, of about so many pixels."""
+        atlas = Atlas(part.corners, pixels)
         name = look.name
         while name in self._in_space or name in self._looks:
             name = f"{look.name}#{len(self._in_space)}"

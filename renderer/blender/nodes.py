@@ -199,7 +199,10 @@ class Graph:
     def _evaluate_in_space(self, node, output, path, sheet):
         """What an Atlas knows, and no other sheet; None: nothing of it."""
         if node.type in procedural.NODES:
-            return procedural_nodes.evaluate(self, node, output, path, sheet)
+            key = output.as_pointer(), path
+            if key not in sheet.kept:
+                sheet.kept[key] = procedural_nodes.evaluate(self, node, output, path, sheet)
+            return sheet.kept[key]
         if node.type == "UVMAP":
             return sheet.coordinates("UV", node.uv_map), True
         if node.type == "TEX_COORD" and output.name in ("UV", "Generated", "Object"):

@@ -8,7 +8,8 @@ from . import cameras, hair, lamps, meshes, worlds
 from .materials import IN_SPACE, Materials
 from .passes import group_of
 
-_PIXELS_IN_SPACE, _PIXELS_IN_VIEW = 1 << 20, 1 << 16  # of a mesh's textures that are computed place by place
+# Of a mesh's textures that are computed place by place; for each pixel of the picture where the mesh is nearest.
+_PIXELS_LEAST, _PIXELS_MOST, _PIXELS_IN_VIEW, _PIXELS_FOR_EACH = 1 << 16, 1 << 20, 1 << 16, 16
 _SURFACES = {"MESH", "CURVE", "SURFACE", "FONT", "META"}
 
 
@@ -28,14 +29,30 @@ def _has_generated(look):
     return look.layout == IN_SPACE or (look.layout is not None and look.layout[0][0] == "GENERATED")
 
 
-def _make_in_space(parts, looks, materials):
+class _Sharpness:
+    """How fine textures are made that are computed place by place. view: that of a 3D view, which moves, or None."""
+
+    def __init__(self, blender_scene, depsgraph, view):
+        self._camera = None if view else blender_scene.camera.evaluated_get(depsgraph)
+        self._size = cameras.picture_size(blender_scene.render)
+
+    def pixels(self, part, matrix, is_instance):
+        if self._camera is None:
+            return _PIXELS_IN_VIEW
+        each = cameras.pixels_of_unit(self._camera, self._size, matrix, part.positions, is_instance)
+        a, b, c = part.corners.positions.astype(np.float64).transpose(1, 0, 2)
+        area = 0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=-1).sum()
+        return int(np.clip(_PIXELS_FOR_EACH * area * each ** 2, _PIXELS_LEAST, _PIXELS_MOST))
+
+
+def _make_in_space(parts, looks, materials, pixels_of):
     """Looks of its own for each part that wants them, in place."""
     for k, part in enumerate(parts):
         if part.corners is not None:
-            looks[part.slot], parts[k] = materials.look_in_space(looks[part.slot], part)
+            looks[part.slot], parts[k] = materials.look_in_space(looks[part.slot], part, pixels_of(part))
 
 
-def _model(instance_object, materials, name, notes):
+def _model(instance_object, materials, name, notes, pixels_of):
     """Reads the mesh at once: what Blender makes for an instance goes with it."""
     looks = _look_list(instance_object, materials)
     try:
@@ -54,7 +71,7 @@ def _model(instance_object, materials, name, notes):
     if bad:
         notes.say(f'object "{instance_object.name}": vertices that are not finite are left out with their material')
         parts = [part for part in parts if np.isfinite(part.positions).all()]
-    _make_in_space(parts, looks, materials)
+    _make_in_space(parts, looks, materials, pixels_of)
     return _Model(name, parts, looks, group_of(instance_object))
 
 
@@ -125,8 +142,8 @@ def translate(scene, depsgraph, motion, notes, poll, view=None, is_by_name=False
         raise RuntimeError("the scene has no camera")
     else:
         cameras.add_camera(scene, blender_scene.camera.evaluated_get(depsgraph), blender_scene.render, motion, notes)
-    materials = Materials(scene, notes, layer.material_override, _PIXELS_IN_VIEW if view else _PIXELS_IN_SPACE)
-    models = {}
+    materials, models = Materials(scene, notes, layer.material_override), {}
+    sharpness = _Sharpness(blender_scene, depsgraph, view)
     taken, hairy = set(), set()  # names of models; of what has hair
     for instance in depsgraph.object_instances:
         poll()
@@ -147,7 +164,8 @@ def translate(scene, depsgraph, motion, notes, poll, view=None, is_by_name=False
                 if not is_by_name or name in taken:
                     name = f"{name}#{len(models)}"
                 taken.add(name)
-                models[key] = _model(shown, materials, name, notes)
+                models[key] = _model(shown, materials, name, notes, lambda part: sharpness.pixels(
+                    part, matrix, instance.is_instance))
             if models[key]:
                 models[key].places.append(motion.of_instance(instance, matrix))
         elif shown.type == "CURVES" and layer.use_strand:
