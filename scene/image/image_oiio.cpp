@@ -3,6 +3,7 @@
  * image_file.c (renderer) -> [here] -> bytes in memory. Threads: any; OpenImageIO itself is told to use none of its
  * own. */
 #include "image/image_module.h"
+#include "image/image_signature.h"
 
 #include <OpenImageIO/Imath.h>
 #include <OpenImageIO/filesystem.h>
@@ -280,15 +281,30 @@ image describe(const OIIO::ImageSpec &spec)
     return read;
 }
 
+/* The name of the reader for a picture, by its first bytes. */
+const char *find_reader(const std::string &path, OIIO::Filesystem::IOProxy *proxy)
+{
+    unsigned char bytes[IMAGE_SIGNATURE_BYTES];
+    const size_t size =
+        proxy ? proxy->pread(bytes, sizeof bytes, 0) : OIIO::Filesystem::read_bytes(path, bytes, sizeof bytes);
+    const char *reader = image_signature_reader(path.c_str(), bytes, size);
+    if (!reader)
+        fail("OpenImageIO cannot open it", size == 0 ? "it is empty" : "it is no picture of a known format");
+    return reader;
+}
+
 std::unique_ptr<OIIO::ImageInput> open_input(const std::string &path, OIIO::Filesystem::IOProxy *proxy)
 {
     OIIO::ImageSpec wishes;
     wishes.attribute("oiio:UnassociatedAlpha", 1); /* colours as stored, not multiplied by alpha */
     if (proxy)
         wishes.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
-    std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(path, &wishes, proxy);
+    std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::create(find_reader(path, proxy));
     if (!input)
         fail("OpenImageIO cannot open it", OIIO::geterror());
+    OIIO::ImageSpec spec;
+    if (!input->open(path, spec, wishes))
+        fail("OpenImageIO cannot open it", input->geterror());
     input->threads(1);
     return input;
 }

@@ -2,6 +2,7 @@
  * Flow: tests of renderer/output/image_file.c, image_openexr.c, and of scene/image/image_reader.c, image_oiio.cpp.
  * Threads: one. */
 #define _GNU_SOURCE
+#include "clock.h"
 #include "fixtures/image_file_fixture.h"
 #include "image/image_module_loader.h"
 #include "math/rng.h"
@@ -11,6 +12,7 @@
 #include <signal.h>
 #include <sys/wait.h>
 #include <time.h>
+#include <unistd.h>
 
 static void formats_by_extension(void **state)
 {
@@ -374,6 +376,48 @@ static void broken_pictures_are_errors(void **state)
     assert_null(back.bytes);
 }
 
+/* OpenImageIO's reader of medical pictures goes over any bytes, one by one, a minute or more for this many. */
+static void large_files_that_are_no_pictures_are_refused_at_once(void **state)
+{
+    (void)state;
+    static const char *const NAMES[] = {"zeros.exr", "zeros.dcm", "zeros.tga", "zeros"};
+    for (size_t i = 0; i < sizeof NAMES / sizeof NAMES[0]; i++) {
+        image back;
+        const char *name = in_folder(NAMES[i]);
+        FILE *file = fopen(name, "wb");
+        assert_non_null(file);
+        assert_int_equal(ftruncate(fileno(file), (off_t)256 << 20), 0);
+        assert_int_equal(fclose(file), 0);
+        const double begin = clock_thread_cpu_seconds();
+        expect_failure(image_read(name, &back, message, sizeof message), AG_ERROR_INPUT, NAMES[i]);
+        assert_true(clock_thread_cpu_seconds() - begin < 5.0);
+        assert_null(back.pixels);
+        assert_int_equal(unlink(name), 0);
+    }
+}
+
+/* A picture is known by its bytes, whatever its name is. */
+static void pictures_under_other_names(void **state)
+{
+    (void)state;
+    static const char *const NAMES[] = {"a.png", "a.tif", "a.jpg", "a.exr"}, *const OTHERS[] = {"b.exr", "b", "b.tga"};
+    float pixels[WIDTH * HEIGHT * 3];
+    fill(pixels, 3);
+    for (size_t i = 0; i < sizeof NAMES / sizeof NAMES[0]; i++) {
+        image own, other;
+        const image_description description = describe(3, i == 3 ? IMAGE_HALF : IMAGE_UINT8);
+        write_picture(in_folder(NAMES[i]), &description, pixels);
+        assert_int_equal(image_read(in_folder(NAMES[i]), &own, message, sizeof message), AG_OK);
+        for (size_t k = 0; k < sizeof OTHERS / sizeof OTHERS[0]; k++) {
+            assert_int_equal(rename(in_folder(k == 0 ? NAMES[i] : OTHERS[k - 1]), in_folder(OTHERS[k])), 0);
+            assert_int_equal(image_read(in_folder(OTHERS[k]), &other, message, sizeof message), AG_OK);
+            assert_memory_equal(other.pixels, own.pixels, sizeof pixels);
+            image_reset(&other);
+        }
+        image_reset(&own);
+    }
+}
+
 /* The reader tells what a file holds, keeps bytes as bytes where that is wished, and does not multiply by alpha. */
 static void values_are_as_stored(void **state)
 {
@@ -437,6 +481,8 @@ int main(void)
         TEST_IN_FOLDER(jpeg_keeps_all_colour),
         TEST_IN_FOLDER(equal_pictures_give_equal_bytes),
         TEST_IN_FOLDER(broken_pictures_are_errors),
+        TEST_IN_FOLDER(large_files_that_are_no_pictures_are_refused_at_once),
+        TEST_IN_FOLDER(pictures_under_other_names),
         TEST_IN_FOLDER(values_are_as_stored),
     };
     image_module_get(message,

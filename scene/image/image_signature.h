@@ -1,0 +1,23 @@
+/* image_signature.h: which of OpenImageIO's readers a picture is for, by its first bytes.
+ * OpenImageIO tries all its readers where the one of the name's ending fails; some of them (medical pictures, films,
+ * volumes) work on any bytes for minutes or hours. Flow: image_oiio.cpp -> [here]. Threads: any. */
+#ifndef AFTERGLOW_IMAGE_SIGNATURE_H
+#define AFTERGLOW_IMAGE_SIGNATURE_H
+
+#include <stddef.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+enum { IMAGE_SIGNATURE_BYTES = 16 }; /* how many of the first bytes tell */
+
+/* The reader's name; NULL: it is no picture of a format that is read. path: its ending decides only between formats
+ * that cannot be told by their bytes. */
+const char *image_signature_reader(const char *path, const unsigned char *bytes, size_t size);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif
