@@ -1,8 +1,6 @@
 """The Sky Texture as a picture of all directions and a sun. Light scattered once by air and dust on its way from the sun,
-dimmed by both and by ozone.
-Rests on: Nishita, Sirai, Tadamura, Nakamae, "Display of The Earth Taking into Account Atmospheric Scattering", 1993;
-Bucholtz, "Rayleigh-scattering calculations for the terrestrial atmosphere", 1995. Beside Cycles' sky it is up to 7 %
-bluer."""
+dimmed by both and by ozone. The sky is meant to be the one that Cycles shows, so that the steps along a ray are its own.
+Rests on: Nishita, Sirai, Tadamura, Nakamae, "Display of The Earth Taking into Account Atmospheric Scattering", 1993."""
 
 import math
 
@@ -12,20 +10,22 @@ from .node_math import rgb_of_spectrum
 
 _EARTH_M, _TOP_M = 6360e3, 6420e3
 _AIR_M, _DUST_M = 8000.0, 1200.0  # heights at which there is 1/e of it
-_DUST_SCATTERING, _DUST_EXTINCTION, _DUST_FORWARD = 2e-5, 2.2e-5, 0.76  # 1/m, 1/m, g
+_DUST_SCATTERING, _DUST_EXTINCTION, _DUST_FORWARD = 2e-5, 2.22e-5, 0.76  # 1/m, 1/m, g
 _NM = np.arange(380.0, 781.0, 20.0)
-_AIR_SCATTERING = 1.16e-5 * (550.0 / _NM) ** 4.08  # 1/m at sea level
+# Rayleigh's formula, 1/m at sea level: an index of refraction that is the same for all waves, and molecules per m^3.
+_AIR_INDEX, _AIR_MOLECULES = 1.0002926, 2.504e25
+_AIR_SCATTERING = 8 * math.pi ** 3 * (_AIR_INDEX ** 2 - 1) ** 2 / (3 * _AIR_MOLECULES * (_NM * 1e-9) ** 4)
 _OZONE = 5.4e-4 * np.interp(_NM, np.arange(400.0, 761.0, 20.0), (  # 1/m where it is densest; cross sections, 1e-21 cm^2
     0.01, 0.03, 0.12, 0.35, 0.68, 1.2, 1.8, 2.9, 3.9, 4.6, 5.1, 4.0, 2.9, 2.1, 1.4, 0.88, 0.5, 0.3, 0.25)) * 1e-3
-_LIMB = 5 / 6  # the mean of a disc that is darker towards its limb, as Cycles' is, and brightest in the middle
-_VIEW_STEPS, _SUN_STEPS = 24, 8
+_LIMB = 1 - 0.6 / 3  # the mean of a disc whose light falls off as 1 - 0.6 (1 - cos) towards its limb, as Cycles' does
+_VIEW_STEPS, _SUN_STEPS = 32, 16
 _WIDTH, _HEIGHT = 512, 256
 
 
 def _sun_spectrum():
-    """W/m^2/nm beyond the atmosphere, by a black body of 5772 K seen under 6.79e-5 sr."""
+    """W/m^2/nm beyond the atmosphere, by a black body of 5778 K seen under 6.79e-5 sr."""
     m = _NM * 1e-9
-    return 6.79e-5 * 1.191e-16 / m ** 5 / np.expm1(1.4388e-2 / (m * 5772.0)) * 1e-9
+    return 6.79e-5 * 1.191e-16 / m ** 5 / np.expm1(1.4388e-2 / (m * 5778.0)) * 1e-9
 
 
 def _densities(height_m):
@@ -69,7 +69,9 @@ class Sky:
         return np.exp(-(depths @ loss))
 
     def _radiance(self, directions):
-        """Spectra (..., waves) of the sky, of directions above the horizon in the frame of the sun's azimuth."""
+        """Spectra (..., waves) of the sky, of directions above the horizon in the frame of the sun's azimuth. The light of
+        a step passes the whole of it, as in Cycles, where its middle would be half of it: by the long steps at the horizon
+        that is much."""
         cosine = directions @ self._sun
         g = _DUST_FORWARD
         phases = (3 / (16 * math.pi) * (1 + cosine ** 2),
@@ -81,8 +83,8 @@ class Sky:
         for k in range(_VIEW_STEPS):
             point = eye + directions * step * (k + 0.5)
             here = _densities(np.maximum(np.linalg.norm(point, axis=-1) - _EARTH_M, 0))
-            depths = passed + here * step / 2 + _depths(point, self._sun, _SUN_STEPS)
             passed = passed + here * step
+            depths = passed + _depths(point, self._sun, _SUN_STEPS)
             lit = _is_lit(point, self._sun) * step[..., 0]
             air, dust = (phases[n] * here[..., n] * self._densities[n] * lit for n in (0, 1))
             for wave in range(len(_NM)):
@@ -94,7 +96,7 @@ class Sky:
         """(height, width, 3), lowest row first, as Blender's equirectangular pictures lie; below the horizon its light
         fades."""
         rows = _HEIGHT // 2
-        elevations = (np.arange(rows) + 0.5) / rows * (math.pi / 2)
+        elevations = np.append(0, (np.arange(rows) + 0.5) / rows * (math.pi / 2))  # the horizon, and the rows above it
         azimuths = (np.arange(_WIDTH // 2) + 0.5) / (_WIDTH // 2) * math.pi  # from the sun's, to one side
         directions = np.stack([np.cos(elevations)[:, None] * np.cos(azimuths), np.cos(elevations)[:, None] * np.sin(azimuths),
                                np.repeat(np.sin(elevations)[:, None], len(azimuths), 1)], -1)
@@ -103,10 +105,10 @@ class Sky:
         # Column k is at the azimuth (k + 0.5) / width turns from the sun's; pictures have x in the middle, y to the left.
         phi = (0.5 - (np.arange(_WIDTH) + 0.5) / _WIDTH) * 2 * math.pi
         turns = ((phi - self.sun_azimuth()) / (2 * math.pi)) % 1.0
-        upper = around[:, np.minimum((turns * _WIDTH).astype(int), _WIDTH - 1)]
-        fade = np.maximum(1 - 2.5 * np.sin((np.arange(rows) + 0.5) / rows * (math.pi / 2)), 0) ** 3
-        lower = upper[:1] * fade[::-1, None, None]
-        return np.maximum(np.concatenate([lower, upper]), 0).astype(np.float32)
+        turned = around[:, np.minimum((turns * _WIDTH).astype(int), _WIDTH - 1)]
+        fade = np.maximum(1 - 2.5 * np.sin(elevations[1:]), 0) ** 3
+        lower = turned[:1] * fade[::-1, None, None]
+        return np.maximum(np.concatenate([lower, turned[1:]]), 0).astype(np.float32)
 
     def sun_azimuth(self):
         """From x over y, radians."""
@@ -118,7 +120,7 @@ class Sky:
                          math.sin(self.elevation)])
 
     def sun_irradiance(self):
-        """RGB, W/m^2 on what faces the sun, of its node's intensity 1."""
-        depths = _depths(self._eye[None], self._sun, 64)
+        """RGB, W/m^2 on what faces the sun, of its node's intensity 1. As in Cycles, ozone dims the sky alone."""
+        depths = _depths(self._eye[None], self._sun, 64) * (1, 1, 0)
         spectrum = np.stack([self._transmittance(depths, wave) for wave in range(len(_NM))], -1)[0] * _sun_spectrum()
         return _LIMB * np.maximum(rgb_of_spectrum(_NM, spectrum), 0) if _is_lit(self._eye, self._sun) else np.zeros(3)
