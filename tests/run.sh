@@ -67,7 +67,7 @@ for preset in "${presets[@]}" "${build_only[@]}"; do
 done
 echo "-- $total minutes in all, about"
 
-packages=("${BUILD_PACKAGES[@]}" libcmocka-dev openimageio-tools opencolorio-tools spin python3 clang-format parallel jq file
+packages=("${BUILD_PACKAGES[@]}" libcmocka-dev openimageio-tools opencolorio-tools spin clang-format parallel jq file
     libnanoflann-dev lintian)
 case " ${presets[*]} ${build_only[*]-} " in *-clang*) packages+=(clang) ;; esac
 case " ${presets[*]} " in *" dev-clang "* | *" tsan-clang "*) packages+=(libclang-rt-14-dev) ;; esac

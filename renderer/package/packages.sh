@@ -3,7 +3,7 @@
 
 BUILD_PACKAGES=(build-essential cmake ninja-build pkg-config
     libembree-dev libopenimageio-dev libopenexr-dev libopencolorio-dev libassimp-dev libjansson-dev libhwloc-dev
-    libmicrohttpd-dev zlib1g-dev)
+    libmicrohttpd-dev zlib1g-dev python3)
 
 # install_packages NAME...: installs those that are missing. Root is asked for only if there are any.
 install_packages() {

@@ -76,7 +76,7 @@ cmp use_c.png use_cpp.png || fail "C and C++ give other pictures"
 
 # The Python module, beside the library that was installed.
 module=$(find "$prefix" -path '*/lib/python3/dist-packages/afterglow')
-for file in "$root"/renderer/python/afterglow/*.*; do
+for file in "$root"/renderer/python/afterglow/*.* "$AFTERGLOW_BUILD_DIR"/python/afterglow/_declarations.py; do
     cmp "$file" "$module/${file##*/}" || fail "of the Python module there is no ${file##*/}, or another one"
 done
 if find_python_with_numpy; then

@@ -76,7 +76,7 @@ for each in afterglow python3-afterglow; do
 done
 python_files=$(dpkg-deb -c "$python_package" | awk '$1 !~ /^d/ && $6 !~ /share\/doc/ { print $6 }' | LC_ALL=C sort)
 module=./usr/lib/python3/dist-packages/afterglow
-[[ $python_files == "$(cd "$root/renderer/python/afterglow" && printf "$module/%s\n" *.* | LC_ALL=C sort)" ]] || fail "the Python package holds $python_files"
+[[ $python_files == "$(cd "$AFTERGLOW_BUILD_DIR/python/afterglow" && printf "$module/%s\n" *.* | LC_ALL=C sort)" ]] || fail "the Python package holds $python_files"
 for script in postinst prerm; do
     dpkg-deb --ctrl-tarfile "$python_package" | tar -x --to-stdout "./$script" >"$script"
     sh -n "$script" || fail "$script is no shell script"

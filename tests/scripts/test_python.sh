@@ -8,42 +8,37 @@ source "$(dirname "${BASH_SOURCE[0]}")/../fixtures/shell_test.sh"
 source "$(dirname "${BASH_SOURCE[0]}")/../fixtures/python.sh"
 
 find_python_with_numpy || skip "numpy for Python (python3-numpy) is not installed"
-export AFTERGLOW_LIBRARY=$AFTERGLOW_BUILD_DIR/lib/libafterglow.so PYTHONPATH=$root/renderer/python PYTHONDONTWRITEBYTECODE=1
+export AFTERGLOW_LIBRARY=$AFTERGLOW_BUILD_DIR/lib/libafterglow.so PYTHONPATH=$AFTERGLOW_BUILD_DIR/python PYTHONDONTWRITEBYTECODE=1
 cd "$folder"
 
 "$python" - >layout.c <<'END'
 import ctypes
-from afterglow import _interface
+from afterglow import _declarations
+
 print('#include "afterglow/afterglow.h"')
-for name in ["ContextSettings", "Parameter", "Shape", "Instance", "Light", "Camera", "Texture", "Image", "SceneSettings", "CommitCounts"]:
-    struct = getattr(_interface, name)
-    public = "ag_" + "".join("_" + c.lower() if c.isupper() else c for c in name)[1:]
+assert len(_declarations.STRUCTURES) > 20 and len(_declarations.ENUMERATIONS) > 15
+for public, struct in _declarations.STRUCTURES.items():
     print(f'_Static_assert(sizeof({public}) == {ctypes.sizeof(struct)}, "size of {public}");')
     for field, *_ in struct._fields_:
-        offset = getattr(struct, field).offset
-        print(f'_Static_assert(offsetof({public}, {field}) == {offset}, "{public}.{field}");')
-for i, name in enumerate(_interface.PARAMETER_TYPES):
-    print(f'_Static_assert(AG_PARAMETER_{name.upper()} == {i}, "{name}");')
-for name, i in _interface.HINTS.items():
-    print(f'_Static_assert(AG_HINT_{name.upper().replace("PIXELF", "PIXEL_F")} == {i}, "{name}");')
-for i, name in enumerate(_interface.NAMED):
-    print(f'_Static_assert(AG_NAMED_{name.upper().replace(" ", "_")} == {i}, "{name}");')
-print(f'_Static_assert(AG_STRUCT_SCENE_SETTINGS == {_interface.SCENE_SETTINGS}, "AG_STRUCT_SCENE_SETTINGS");')
-print(f'_Static_assert(AG_CANCELLED == {_interface.CANCELLED}, "AG_CANCELLED");')
-print(f'_Static_assert(AG_STRUCT_RENDER_SETTINGS == {_interface.RENDER_SETTINGS}, "AG_STRUCT_RENDER_SETTINGS");')
+        own = getattr(struct, field)
+        print(f'_Static_assert(offsetof({public}, {field}) == {own.offset} && '
+              f'sizeof((({public} *)0)->{field}) == {own.size}, "{public}.{field}");')
+for public in _declarations.ENUMERATIONS:
+    print(f'_Static_assert(sizeof({public}) == sizeof(int), "size of {public}");')
 END
 "$CC" -std=c17 -I "$root/renderer/include" -I "$root/threads/include" -fsyntax-only layout.c ||
     fail "the module's structs are not the header's"
 echo "ok: layout"
 
 # tests/fixtures/public_abi.txt is what the headers say (test_public_abi.sh).
-"$python" - "$root/tests/fixtures/public_abi.txt" <<'END' || fail "the module's functions are not the header's"
+"$python" - "$root/tests/fixtures/public_abi.txt" <<'END' || fail "the module's functions or enumerations are not the header's"
 import ctypes, re, sys
-from afterglow import _interface
+from afterglow import _declarations, _interface
 
 NAMED = {"void": None, "int": ctypes.c_int, "size_t": ctypes.c_size_t, "uint64_t": ctypes.c_uint64,
          "ag_handle": ctypes.c_uint64, "float": ctypes.c_float, "double": ctypes.c_double, "_Bool": ctypes.c_bool,
-         "ag_sample_counts": _interface.SampleCounts, "ag_commit_counts": _interface.CommitCounts}
+         "unsigned": ctypes.c_uint, "ag_sample_counts": _declarations.SampleCounts,
+         "ag_commit_counts": _declarations.CommitCounts}
 
 def kind(text):
     """Of a parameter or result in C: pointer, or the ctypes type."""
@@ -61,20 +56,70 @@ def differ(own, text):
     wanted = [] if arguments == "void" else [kind(each.strip()) for each in arguments.split(",")]
     return [own_kind(each) for each in own.argtypes] != wanted or own_kind(own.restype) != kind(result)
 
-record = {}
+record, members, enums = {}, {}, {}
 for line in open(sys.argv[1]).read().splitlines():
     if line.startswith("function "):
         text = line[len("function "):]
         record[re.search(r"(ag_\w+)\(", text).group(1)] = text
+    elif line.startswith("struct "):
+        members[line.split()[1]] = []
+    elif " at " in line:
+        struct, member = line.split()[0].split(".")
+        members[struct].append(member)
+    elif line.startswith("enum "):
+        values = enums[line.split()[1]] = []
+    elif " = " in line:
+        values.append(line.split(" = "))
 used = {name: own for name, own in vars(_interface.library).items() if name.startswith("ag_")}
 wrong = [name for name, own in used.items() if name not in record or differ(own, record[name])]
-assert len(used) > 40 and not wrong, wrong
+assert used.keys() == record.keys() and not wrong, wrong
+assert members == {name: [field for field, *_ in own._fields_] for name, own in _declarations.STRUCTURES.items()}
+assert enums.keys() == _declarations.ENUMERATIONS.keys()
+for name, values in enums.items():
+    own = list(_declarations.ENUMERATIONS[name])
+    assert [int(value) for _, value in values] == own, name
+    assert all(member.strip().endswith("_" + each.name) for (member, _), each in zip(values, own)), name
 some = _interface.library.ag_rendering_continue
 assert differ(some, "ag_status ag_rendering_continue(ag_rendering *rendering, size_t samples)")
 assert differ(some, "ag_status ag_rendering_continue(ag_rendering *rendering)")
 assert differ(some, "void ag_rendering_continue(ag_rendering *rendering, int samples)")
 END
-echo "ok: functions"
+echo "ok: functions and enumerations"
+
+# What the headers gain reaches the module without an edit; what is not understood is an error, and nothing is written.
+"$CC" -std=c17 -E -P -x c -I "$root/renderer/include" -I "$root/threads/include" "$root/renderer/include/afterglow/afterglow.h" -o public.i
+sed 's/^} ag_light;/    const ag_texture *gained, *more; float row[AG_GAINED];\n&/
+    s/^typedef struct ag_light {/typedef enum ag_gained { AG_LOST = 2, AG_GAINED } ag_gained; &/' public.i >gained.i
+cat >>gained.i <<'END'
+__attribute__((visibility("default"))) const float *ag_gain(ag_scene *scene, const double up[3], ag_handle *out_handle,
+                                                            ag_gained how, const char *const *names, const ag_light *light);
+END
+"$python" "$root/renderer/python/make_declarations.py" gained.i gained.py || fail "headers that gain are not understood"
+"$python" - <<'END' || fail "what the headers gain does not reach the module"
+import ctypes, gained
+from ctypes import POINTER
+from afterglow import _declarations
+
+before, after = _declarations.Light._fields_, gained.Light._fields_
+assert [name for name, _ in after[len(before):]] == ["gained", "more", "row"], after
+assert [kind for _, kind in after[len(before):]] == [POINTER(gained.Texture)] * 2 + [ctypes.c_float * 3], after
+assert ctypes.sizeof(gained.Light) == ctypes.sizeof(_declarations.Light) + 32
+assert dict(gained.Gained.__members__) == {"LOST": 2, "GAINED": 3}
+assert gained.FUNCTIONS.keys() - _declarations.FUNCTIONS.keys() == {"ag_gain"}
+assert gained.FUNCTIONS["ag_gain"] == (POINTER(ctypes.c_float), [
+    ctypes.c_void_p, ctypes.c_void_p, POINTER(ctypes.c_uint64), ctypes.c_int, POINTER(ctypes.c_char_p),
+    POINTER(gained.Light)])
+END
+for strange in 's/^} ag_light;/    long double wide;\n&/' 's/^} ag_light;/    int bits : 3;\n&/' \
+    's/^} ag_light;/    struct { int x; } inner;\n&/' 's/^} ag_light;/    void (*call)(int);\n&/' \
+    's/^typedef struct ag_light {/typedef union ag_both { int a; float b; } ag_both;\n&/' \
+    's/int ag_film_channel_count(/ag_nothing ag_film_channel_count(/'; do
+    sed "$strange" public.i >strange.i
+    ! cmp -s strange.i public.i || fail "nothing is changed by $strange"
+    expect 1 "strange.i: not understood: " "$python" "$root/renderer/python/make_declarations.py" strange.i strange.py
+    [[ ! -e strange.py ]] || fail "declarations are written in spite of $strange"
+done
+echo "ok: what headers gain"
 
 "$python" - <<'END' || fail "public names lack a docstring or a type hint"
 import inspect, sys, typing, afterglow
@@ -112,7 +157,7 @@ echo "ok: docstrings and type hints"
 # A checker of types reads the hints of the module as it is installed, and finds what is wrong.
 if command -v mypy >/dev/null; then
     mkdir -p typed/afterglow
-    cp "$root"/renderer/python/afterglow/{*.py,py.typed} typed/afterglow
+    cp "$AFTERGLOW_BUILD_DIR"/python/afterglow/{*.py,py.typed} typed/afterglow
     cat >right.py <<'END'
 import afterglow, numpy
 from numpy.typing import NDArray
@@ -275,6 +320,13 @@ with afterglow.Context(threads=2, progress=lambda phase, fraction: phases.append
         assert not scene._lent and not scene._lent_since, "arrays are kept that nobody borrows"
     with context.load_text(open("scene.pbrt").read()) as scene:
         assert numpy.array_equal(scene.render(**picture), pixels)
+    with context.scene(editable=True) as scene:
+        refused(ValueError, '"sepia" is none of: film, sampler, integrator, pixelfilter', scene.hint, "Sepia", "rgb")
+        refused(ValueError, "none of: float, spectrum", scene.texture, "t", "color", "constant")
+        refused(ValueError, "none of: material, medium, float texture, ", scene.remove_named, "shape", "t")
+        scene.hint("PixelFilter", "box")
+        scene.texture("t", "float", "constant")
+        refused(afterglow.Error, "the scene is not committed yet", scene.remove_named, "float texture", "t")
     refused(afterglow.Error, "missing.pbrt: error: cannot read the file", context.load, "missing.pbrt")
     with context.scene() as scene:
         refused(afterglow.Error, "index 9 (value 3", scene.shape, "trianglemesh",

@@ -11,11 +11,12 @@ from typing import Any, Optional, Union
 import numpy
 from numpy.typing import NDArray
 
-from ._interface import PARAMETER_TYPES, Parameter
+from ._declarations import Parameter, ParameterType
 
 Path = Union[str, bytes, os.PathLike]
 Parameters = Optional[Mapping[str, Any]]  # {"rgb reflectance": (1, 0, 0)}
 Poll = Optional[Callable[[], None]]
+_PARAMETER_TYPES = {each.name.lower(): each for each in ParameterType}
 
 
 def encoded(value):
@@ -45,9 +46,9 @@ def _strings(values, kept):
 def _parameter(declaration, value, kept):
     """One of {"rgb reflectance": (1, 0, 0)}; what it points to is kept by `kept`."""
     words = declaration.split()
-    if len(words) != 2 or words[0] not in PARAMETER_TYPES:
+    if len(words) != 2 or words[0] not in _PARAMETER_TYPES:
         raise ValueError(f'"{declaration}" is no "type name" of a parameter')
-    made = Parameter(name=words[1].encode(), type=PARAMETER_TYPES.index(words[0]))
+    made = Parameter(name=words[1].encode(), type=_PARAMETER_TYPES[words[0]])
     if isinstance(value, (str, os.PathLike)):
         value = [value]
     if isinstance(value, (list, tuple)) and value and isinstance(value[0], (str, os.PathLike)):

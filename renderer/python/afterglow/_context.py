@@ -11,8 +11,9 @@ from ctypes import byref, c_void_p
 from typing import Any, Optional, Union
 
 from ._arguments import Path, encoded
+from ._declarations import ContextSettings, LogFn, LogLevel, ProgressFn, SceneSettings, Status, Struct
 from ._errors import Cancelled, Error, opened
-from ._interface import CANCELLED, LOG, PROGRESS, SCENE_SETTINGS, ContextSettings, SceneSettings, library
+from ._interface import library
 from ._scene import Scene
 
 MOST_THREADS = 2**32 - 1  # that the library's unsigned number can say
@@ -33,7 +34,7 @@ class Context:
         self._progress = progress
         self._warn = warn or (lambda message: warnings.warn(message, stacklevel=4))
         self._failed = None
-        self._callbacks = (LOG(self._hear), PROGRESS(self._tell))  # they live as long as the context
+        self._callbacks = (LogFn(self._hear), ProgressFn(self._tell))  # they live as long as the context
         self._held = c_void_p()
         self._scenes = []  # that are not closed
         self._is_at_work = False
@@ -47,7 +48,7 @@ class Context:
         return opened(self._held, "context")
 
     def _hear(self, _user, level, message):
-        if level <= 1:
+        if level <= LogLevel.WARNING:
             self._said.append(message.decode(errors="replace"))
 
     def _tell(self, _user, phase, fraction):
@@ -65,12 +66,12 @@ class Context:
         if failed:
             library.ag_context_clear_cancel(self._pointer)
             raise failed
-        if status == 0:
+        if status == Status.OK:
             for message in said:
                 self._warn(message)
             return
         text = "\n".join(said) or library.ag_status_text(status).decode()
-        raise (Cancelled if status == CANCELLED else Error)(text)
+        raise (Cancelled if status == Status.CANCELLED else Error)(text)
 
     def _work(self, function, *arguments, poll=None):
         """Calls the library on a thread of its own, so that Ctrl-C is heard here meanwhile, and calls it off. poll: called
@@ -127,7 +128,7 @@ class Context:
         """An empty scene. editable: it can be changed once it is complete."""
         self._expect_rest()
         settings = SceneSettings()
-        library.ag_struct_fill(SCENE_SETTINGS, byref(settings), ctypes.sizeof(settings))
+        library.ag_struct_fill(Struct.SCENE_SETTINGS, byref(settings), ctypes.sizeof(settings))
         settings.is_editable = editable
         return Scene(self, library.ag_scene_create, byref(settings))
 

@@ -10,9 +10,21 @@ import numpy
 from numpy.typing import ArrayLike, NDArray
 
 from ._arguments import Parameters, Path, Poll, check_borrowed, encoded, matrix_address, parameter_array
+from ._declarations import (Camera, Image, Instance, Light, Named, RenderSettings, SceneHint, Shape, Status, Texture,
+                            TextureValue)
 from ._errors import opened
-from ._interface import HINTS, NAMED, RENDER_SETTINGS, Camera, Image, Instance, Light, Shape, Texture, library
+from ._interface import library
 from ._rendering import Rendering, pixels_of
+
+_HINTS = {each.name.replace("_", "").lower(): each for each in SceneHint}
+_NAMED = {each.name.replace("_", " ").lower(): each for each in Named}
+_TEXTURE_VALUES = {each.name.lower(): each for each in TextureValue}
+
+
+def _one_of(names, name):
+    if name not in names:
+        raise ValueError(f'"{name}" is none of: {", ".join(names)}')
+    return names[name]
 
 
 class Scene:
@@ -44,7 +56,7 @@ class Scene:
         """handle: a c_uint64 with the handle of what borrows the arrays `lent` from now on, or with None none any more."""
         self._context._expect_rest()
         status = function(self._pointer, *arguments)
-        if status == 0:  # before anything is raised: what was done is done, whoever takes offence at a warning
+        if status == Status.OK:  # before anything is raised: what was done is done, whoever takes offence at a warning
             self._is_complete = False
             if handle is not None:
                 self._lent_since.append((handle.value, lent))
@@ -56,7 +68,7 @@ class Scene:
 
     def hint(self, directive: str, type: str, parameters: Parameters = None) -> None:
         """What the scene wishes of the picture; directive: "Film", "Sampler", "Integrator" or "PixelFilter"."""
-        self._named(library.ag_scene_set_hint, HINTS[directive.lower()], type, parameters)
+        self._named(library.ag_scene_set_hint, _one_of(_HINTS, directive.lower()), type, parameters)
 
     def material(self, name: str, type: str, parameters: Parameters = None, *, instead: bool = False) -> None:
         """A material for shapes to name. instead: of the one of that name, in a scene that can be changed."""
@@ -75,7 +87,7 @@ class Scene:
         items, count = parameter_array(parameters, kept)
         function = library.ag_scene_change_texture if instead else library.ag_scene_add_texture
         self._call(function, byref(Texture(
-            ctypes.sizeof(Texture), encoded(name), ("float", "spectrum").index(value), encoded(type), items, count,
+            ctypes.sizeof(Texture), encoded(name), _one_of(_TEXTURE_VALUES, value), encoded(type), items, count,
             matrix_address(world_from_texture, kept))))
 
     def image(self, name: str, pixels: ArrayLike, *, instead: bool = False) -> None:
@@ -158,7 +170,7 @@ class Scene:
 
     def remove_named(self, kind: str, name: str) -> None:
         """Removes what has a name; kind: "material", "medium", "float texture", "spectrum texture" or "image"."""
-        self._call(library.ag_scene_remove_named, NAMED.index(kind), encoded(name))
+        self._call(library.ag_scene_remove_named, _one_of(_NAMED, kind), encoded(name))
 
     def commit_counts(self) -> dict[str, int]:
         """What the commits of a scene that can be changed have made in all: "commits", "meshes_made", "trees_built",
@@ -191,7 +203,7 @@ class Scene:
             self._context._work(commit, self._pointer, poll=poll)
         finally:  # the library has done it, or has not, whatever was raised beside it
             if statuses:
-                self._note_commit(statuses[0] == 0)
+                self._note_commit(statuses[0] == Status.OK)
 
     def _note_commit(self, is_done):
         """Which arrays are lent from now on: where it failed after one that did not, the changes since are dropped."""
@@ -206,14 +218,14 @@ class Scene:
 
     def _settings(self, values):
         """An ag_render_settings, and what it borrows."""
-        size = library.ag_struct_size(RENDER_SETTINGS)
-        room = ctypes.create_string_buffer(size)
-        self._context._check(library.ag_render_settings_fill(self._context._pointer, self._pointer, room, size))
+        room = RenderSettings()
+        self._context._check(library.ag_render_settings_fill(self._context._pointer, self._pointer, byref(room),
+                                                             ctypes.sizeof(room)))
         kept = [room]
         for name, value in values.items():
             kept.append(None if value is True else encoded(str(value)))
             name = name.replace("_", "-")
-            if library.ag_render_settings_set(room, name.encode(), kept[-1]) != 0:
+            if library.ag_render_settings_set(room, name.encode(), kept[-1]) != Status.OK:
                 raise ValueError(f"{name}: there is no such setting, or {value!r} is no value of it")
         return room, kept
 
