@@ -27,12 +27,11 @@ static ag_render_settings pilot_settings(const ag_render_settings *settings, flo
 }
 
 /* Errors: those of rendering_create_film, with a film or without. */
-static ag_status create_film(ag_rendering *pilot, float scale)
+static ag_status create_film(ag_rendering *pilot)
 {
     AG_TRY(rendering_create_film(pilot));
     ag_film *film = pilot->film;
-    film->filter.radius[0] *= scale;
-    film->filter.radius[1] *= scale;
+    film->filter.radius[0] = film->filter.radius[1] = 0.0f; /* splitting.h says why */
     for (size_t i = 0; i < film_area_count(film); i++)
         film->splits[i].counts = (split_counts){.rays = RAYS, .lights = LIGHTS};
     return AG_OK;
@@ -45,6 +44,14 @@ static void count_camera_rays_apart(eye_worker *workers, unsigned count)
         workers[i].rays_path += workers[i].rays_camera;
         workers[i].rays_camera = workers[i].camera_rays_met = workers[i].samples_not_finite = 0;
     }
+}
+
+/* As eye_worker_cost counts: photons' paths, and an estimate for each irradiance photon. */
+static double cost_of_maps(const maps *m)
+{
+    double rays = (double)m->global.set.rays + (double)m->caustic.set.rays;
+    return (double)EYE_COST_OF_PATH_RAY * rays +
+           (double)EYE_COST_OF_CAUSTIC * (double)m->global.irradiance_photons.count;
 }
 
 ag_status split_pilot_run(ag_rendering *r)
@@ -62,7 +69,7 @@ ag_status split_pilot_run(ag_rendering *r)
                           .film = r->pilot,
                           .is_pilot = true};
     if (!r->pilot) {
-        ag_status made = create_film(&pilot, scale);
+        ag_status made = create_film(&pilot);
         r->pilot = pilot.film; /* and is freed with the rendering */
         AG_TRY(made);
     }
@@ -75,7 +82,7 @@ ag_status split_pilot_run(ag_rendering *r)
     ag_status status = render_tiles(&pilot, SAMPLES);
     count_camera_rays_apart(r->workers, r->context->statistics.threads);
     if (status == AG_OK)
-        status = splitting_begin(film, pilot.film, &r->settings);
+        status = splitting_begin(film, pilot.film, cost_of_maps(r->maps), &r->settings);
     if (status == AG_PAUSED)
         return status;
     ag_film_destroy(r->pilot);

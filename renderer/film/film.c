@@ -146,7 +146,7 @@ void ag_film_destroy(ag_film *film)
     free(film);
 }
 
-int film_planes(const ag_film *film, film_plane out_planes[FILM_PLANES_MAX])
+int film_planes(ag_film *film, film_plane out_planes[FILM_PLANES_MAX])
 {
     size_t pixels = film_area_count(film);
     int count = 0;
@@ -156,6 +156,7 @@ int film_planes(const ag_film *film, film_plane out_planes[FILM_PLANES_MAX])
         out_planes[count++] = (film_plane){film->wanted, pixels * sizeof *film->wanted};
     if (film->splits)
         out_planes[count++] = (film_plane){film->splits, pixels * sizeof *film->splits};
+    out_planes[count++] = (film_plane){&film->cost_per_variance, sizeof film->cost_per_variance};
     if (film->negatives)
         out_planes[count++] = (film_plane){film->negatives, pixels * sizeof *film->negatives};
     for (int i = 0; i < FILM_VIEW_COUNT; i++)
@@ -173,8 +174,10 @@ int film_planes(const ag_film *film, film_plane out_planes[FILM_PLANES_MAX])
 void film_clear(ag_film *film, const ag_render_settings *settings)
 {
     film_plane planes[FILM_PLANES_MAX];
+    const double of_frame = film->cost_per_variance; /* of the pilot, which no sample has a part in */
     for (int i = film_planes(film, planes) - 1; i >= 0; i--)
         memset(planes[i].bytes, 0, planes[i].size);
+    film->cost_per_variance = of_frame;
     film_begin_splits(film, settings);
 }
 

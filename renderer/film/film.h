@@ -58,6 +58,7 @@ struct ag_film {
     uint32_t *counts;              /* samples so far */
     uint32_t *wanted;              /* samples that it is to have, see adaptive.h; NULL: as many as all */
     split_trial *splits;           /* see splitting.h; NULL: all samples are split alike */
+    double cost_per_variance;      /* see splitting.h: of the whole frame; 0: blocks choose each for itself */
     split_counts *first_splits;    /* of the first samples, by film_block_number; NULL: splitting_first */
     uint32_t *negatives;           /* samples with sign -1; NULL where the filter has no signs */
     float *views[FILM_VIEW_COUNT]; /* a plane each; NULL where not asked for */
@@ -99,14 +100,14 @@ void film_resolve(struct ag_film *film);
 /* Gives one pixel of the area as the picture shows it. */
 void film_develop(const struct ag_film *film, size_t pixel, float out[3]);
 
-/* An array that samples have filled, for checkpoints to write and read. film_planes gives all of them, and returns how
- * many there are. */
+/* An array that samples or the pilot have filled, for checkpoints to write and read. film_planes gives all of them, and
+ * returns how many there are. */
 typedef struct film_plane {
     void *bytes; /* the film's */
     size_t size;
 } film_plane;
-enum { FILM_PLANES_MAX = 7 + FILM_VIEW_COUNT + CRYPTOMATTE_KIND_COUNT };
-int film_planes(const struct ag_film *film, film_plane out_planes[FILM_PLANES_MAX]);
+enum { FILM_PLANES_MAX = 8 + FILM_VIEW_COUNT + CRYPTOMATTE_KIND_COUNT };
+int film_planes(struct ag_film *film, film_plane out_planes[FILM_PLANES_MAX]);
 
 /* The number, row by row, of the block that a pixel of the full picture lies in, among those that the area touches. */
 size_t film_block_number(const struct ag_film *film, int x, int y);

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-ag_status film_copy_take(const ag_film *film, unsigned char **copy)
+ag_status film_copy_take(ag_film *film, unsigned char **copy)
 {
     film_plane planes[FILM_PLANES_MAX];
     const int count = film_planes(film, planes);

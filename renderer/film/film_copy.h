@@ -6,7 +6,7 @@
 #include "film/film.h"
 
 /* Copies the film's planes to *copy, which is made where it is NULL, and is to be freed. Errors: AG_ERROR_MEMORY. */
-ag_status film_copy_take(const struct ag_film *film, unsigned char **copy);
+ag_status film_copy_take(struct ag_film *film, unsigned char **copy);
 /* The planes are as they were then; resolved. */
 void film_copy_restore(struct ag_film *film, const unsigned char *copy);
 

@@ -24,14 +24,12 @@ enum { CAUSTIC_BITS_FIXED = 2, CAUSTIC_BITS_ADAPTIVE = 1 };
  * have looked past small things. */
 enum { FIRST_RAYS_MIN = 4, FIRST_LIGHTS_MIN = 4 };
 
-/* With a fixed number of camera samples each block has so many gather rays for each, or half of the most: samples along
- * edges vary much, but are spread so well that little of that is left in the mean (Mitchell, "Consequences of
- * Stratified Sampling in Graphics", 1996). So inner samples are worth more than the variance of single camera samples
- * says: by the root of how many of these there are, but no more than twice, as measured in five scenes. */
-enum { FIXED_LEAST = 8 };
-static const double FIXED_FACTOR_MOST = 2.0;
-/* With a fixed number of camera samples no block needs a standard error (noise.h) below this, which nobody sees. */
+/* A fixed number of camera samples needs no standard error (noise.h) of the frame below this, which nobody sees. */
 static const double FIXED_CLEAN = 0.003;
+
+/* The frame's numbers depend on its variance and cost, and these on the numbers: so many times each is computed from
+ * the other. The pilot's pixels are taken by squares of GROUP by GROUP, as variances of four samples say little. */
+enum { FRAME_ROUNDS = 16, GROUP = 4 };
 
 /* A block is told of by so many of the pilot's pixels on each side of its middle, at least: four samples of one alone
  * do not tell a variance. */
@@ -109,7 +107,7 @@ void split_trial_add(split_trial *trial, const eye_sample *sample)
 
 /* --- deciding --- */
 
-/* Over a block: how many pixels, their variances of what is shown of one sample, and costs. */
+/* Over a block: how many pixels, their variances of what is shown of one sample, and costs of one. */
 typedef struct block_sums {
     double pixels, all, by_parts, by_ray, by_light, caustic;
     double cost_of_ray, cost_of_light, cost_of_caustic, cost_of_rest;
@@ -126,17 +124,15 @@ static void add_pixel(const split_trial *trial, double count, double scale, bloc
     sums->by_ray += weight * (double)trial->by_ray / count;
     sums->by_light += lights_known > 0.0 ? weight * (double)trial->by_light / lights_known : 0.0;
     sums->caustic += weight * (double)trial->caustic / count;
-    sums->cost_of_ray += (double)trial->cost_of_ray;
-    sums->cost_of_light += (double)trial->cost_of_light;
-    sums->cost_of_caustic += (double)trial->cost_of_caustic;
-    sums->cost_of_rest += (double)trial->cost_of_rest;
+    sums->cost_of_ray += (double)trial->cost_of_ray / count;
+    sums->cost_of_light += (double)trial->cost_of_light / count;
+    sums->cost_of_caustic += (double)trial->cost_of_caustic / count;
+    sums->cost_of_rest += (double)trial->cost_of_rest / count;
 }
 
 /* The bounds of a block's choice. */
 typedef struct choice {
-    double scale;  /* from radiance to what is shown */
-    double factor; /* of the numbers that are best for single camera samples */
-    double clean;  /* the variance of a sample that does no harm; 0: none */
+    double scale; /* from radiance to what is shown */
     split_counts least, most;
 } choice;
 
@@ -146,18 +142,18 @@ typedef struct camera_part {
 } camera_part;
 
 /* caustics: how many times their mean square is in the variance, beyond that of caustics which are always asked for. */
-static camera_part camera_part_of(const block_sums *sums, const choice *c, double caustics, double cost)
+static camera_part camera_part_of(const block_sums *sums, double caustics, double cost)
 {
-    double variance = fmax(sums->all - sums->by_parts + caustics * sums->caustic, LEAST_REST * sums->all);
-    return (camera_part){fmax(variance, c->clean * sums->pixels), cost};
+    return (camera_part){fmax(sums->all - sums->by_parts + caustics * sums->caustic, LEAST_REST * sums->all), cost};
 }
 
-/* The number of samples of a part that is best for each camera sample. */
-static double wanted_count(const camera_part *rest, const choice *c, double by_one, double cost_of_one)
+static double cost_per_variance_of(camera_part part) { return part.variance > 0.0 ? part.cost / part.variance : 0.0; }
+
+/* The number of samples of a part that is best for each camera sample, where samples cost so much for their variance.
+ */
+static double wanted_count(double cost_per_variance, double by_one, double cost_of_one)
 {
-    if (!(rest->variance > 0.0 && cost_of_one > 0.0))
-        return 1.0;
-    return c->factor * sqrt(by_one / rest->variance * rest->cost / cost_of_one);
+    return cost_per_variance > 0.0 && cost_of_one > 0.0 ? sqrt(by_one / cost_of_one * cost_per_variance) : 1.0;
 }
 
 /* The power of two nearest by ratio to the number that is wanted, within bounds. */
@@ -178,33 +174,42 @@ static uint32_t best_caustic_bits(double wanted, uint32_t most)
     return bits;
 }
 
-static split_counts best_counts(const block_sums *sums, const choice *c)
+static uint32_t wanted_caustic_bits(double cost_per_variance, const block_sums *sums, const choice *c)
 {
-    camera_part rest = camera_part_of(sums, c, -1.0, sums->cost_of_rest);
-    uint32_t bits =
-        best_caustic_bits(wanted_count(&rest, c, sums->caustic, sums->cost_of_caustic), c->most.caustic_bits);
+    return best_caustic_bits(wanted_count(cost_per_variance, sums->caustic, sums->cost_of_caustic),
+                             c->most.caustic_bits);
+}
+
+static split_counts counts_at(double cost_per_variance, uint32_t caustic_bits, const block_sums *sums, const choice *c)
+{
+    return (split_counts){.caustic_bits = caustic_bits,
+                          .rays = best_count(wanted_count(cost_per_variance, sums->by_ray, sums->cost_of_ray),
+                                             c->least.rays, c->most.rays),
+                          .lights = best_count(wanted_count(cost_per_variance, sums->by_light, sums->cost_of_light),
+                                               c->least.lights, c->most.lights)};
+}
+
+/* The best of a block that goes on until it is quiet enough, whatever others do. */
+static split_counts best_of_block(const block_sums *sums, const choice *c)
+{
+    uint32_t bits = wanted_caustic_bits(cost_per_variance_of(camera_part_of(sums, -1.0, sums->cost_of_rest)), sums, c);
     double shared = (double)(1u << bits); /* so many samples share an estimate of caustics */
-    rest = camera_part_of(sums, c, shared - 1.0, sums->cost_of_rest + sums->cost_of_caustic / shared);
-    return (split_counts){
-        .caustic_bits = bits,
-        .rays = best_count(wanted_count(&rest, c, sums->by_ray, sums->cost_of_ray), c->least.rays, c->most.rays),
-        .lights =
-            best_count(wanted_count(&rest, c, sums->by_light, sums->cost_of_light), c->least.lights, c->most.lights)};
+    camera_part rest = camera_part_of(sums, shared - 1.0, sums->cost_of_rest + sums->cost_of_caustic / shared);
+    return counts_at(cost_per_variance_of(rest), bits, sums, c);
+}
+
+static split_counts best_counts(const struct ag_film *film, const block_sums *sums, const choice *c)
+{
+    double of_frame = film->cost_per_variance;
+    return of_frame > 0.0 ? counts_at(of_frame, wanted_caustic_bits(of_frame, sums, c), sums, c)
+                          : best_of_block(sums, c);
 }
 
 static choice make_choice(const ag_render_settings *settings)
 {
-    choice c = {noise_shown_scale(settings) * (double)settings->exposure,
-                1.0,
-                0.0,
-                {.rays = 1, .lights = 1},
-                splitting_most(settings, true)};
-    if (settings->noise_level > 0.0f)
-        return c;
-    c.factor = fmin(sqrt((double)settings->samples_per_pixel), FIXED_FACTOR_MOST);
-    c.least.rays = (c.most.rays + 1) / 2 < FIXED_LEAST ? (c.most.rays + 1) / 2 : FIXED_LEAST;
-    c.clean = FIXED_CLEAN * FIXED_CLEAN * settings->samples_per_pixel;
-    return c;
+    return (choice){noise_shown_scale(settings) * (double)settings->exposure,
+                    {.rays = 1, .lights = 1},
+                    splitting_most(settings, true)};
 }
 
 /* A block all of whose pixels have had `barrier` samples; another was decided on before, or needs no more. */
@@ -219,7 +224,7 @@ static void decide_block(struct ag_film *film, film_area block, uint32_t barrier
             add_pixel(&film->splits[pixel], (double)barrier, c->scale, &sums);
         }
     split_counts before = film->splits[film_pixel_at(film, block.x0, block.y0)].counts;
-    split_counts counts = best_counts(&sums, c);
+    split_counts counts = best_counts(film, &sums, c);
     uint32_t used = (barrier + before.ray_shift) * before.rays;
     counts.ray_shift = (used + counts.rays - 1) / counts.rays - barrier;
     for (int y = block.y0; y < block.y0 + block.height; y++)
@@ -260,7 +265,7 @@ static split_counts counts_by_pilot(const struct ag_film *film, const struct ag_
             size_t pixel = film_pixel_at(pilot, column, row);
             add_pixel(&pilot->splits[pixel], (double)pilot->counts[pixel], c->scale, &sums);
         }
-    split_counts counts = best_counts(&sums, c), unknown = splitting_first(settings);
+    split_counts counts = best_counts(film, &sums, c), unknown = splitting_first(settings);
     if (!(sums.cost_of_ray > 0.0)) /* the pilot has met nothing there that gathers */
         counts.rays = unknown.rays;
     if (!(sums.cost_of_light > 0.0))
@@ -268,13 +273,56 @@ static split_counts counts_by_pilot(const struct ag_film *film, const struct ag_
     return counts;
 }
 
-ag_status splitting_begin(struct ag_film *film, const struct ag_film *pilot, const ag_render_settings *settings)
+/* Adds what a group's camera samples have, where the frame's cost so much for their variance. */
+static void add_group(const block_sums *sums, double cost_per_variance, const choice *c, camera_part *whole)
+{
+    double rays = wanted_count(cost_per_variance, sums->by_ray, sums->cost_of_ray);
+    double lights = wanted_count(cost_per_variance, sums->by_light, sums->cost_of_light);
+    double caustics = wanted_count(cost_per_variance, sums->caustic, sums->cost_of_caustic);
+    rays = fmin(fmax(rays, (double)c->least.rays), (double)c->most.rays);
+    lights = fmin(fmax(lights, (double)c->least.lights), (double)c->most.lights);
+    caustics = fmin(fmax(caustics, 1.0 / (double)(1u << c->most.caustic_bits)), 1.0);
+    whole->variance +=
+        camera_part_of(sums, 1.0 / caustics - 1.0, 0.0).variance + sums->by_ray / rays + sums->by_light / lights;
+    whole->cost +=
+        sums->cost_of_rest + sums->cost_of_ray * rays + sums->cost_of_light * lights + sums->cost_of_caustic * caustics;
+}
+
+/* What the frame's camera samples cost for their variance when all blocks have the best numbers. fixed: the cost of all
+ * else for each of them. */
+static double cost_per_variance_of_frame(const struct ag_film *pilot, const choice *c, double fixed, double clean)
+{
+    double out = 0.0;
+    for (int round = 0; round < FRAME_ROUNDS; round++) {
+        camera_part whole = {0};
+        double pixels = 0.0;
+        for (int y0 = 0; y0 < pilot->full_height; y0 += GROUP)
+            for (int x0 = 0; x0 < pilot->full_width; x0 += GROUP) {
+                block_sums sums = {0};
+                for (int y = y0; y < y0 + GROUP && y < pilot->full_height; y++)
+                    for (int x = x0; x < x0 + GROUP && x < pilot->full_width; x++) {
+                        size_t pixel = film_pixel_at(pilot, x, y);
+                        add_pixel(&pilot->splits[pixel], (double)pilot->counts[pixel], c->scale, &sums);
+                    }
+                add_group(&sums, out, c, &whole);
+                pixels += sums.pixels;
+            }
+        out = (whole.cost + fixed * pixels) / fmax(whole.variance, clean * pixels);
+    }
+    return out;
+}
+
+ag_status splitting_begin(struct ag_film *film, const struct ag_film *pilot, double fixed_cost,
+                          const ag_render_settings *settings)
 {
     const film_area *all = &film->area;
     const int right = all->x0 + all->width, bottom = all->y0 + all->height;
+    const double samples = (double)settings->samples_per_pixel;
     choice c = make_choice(settings);
-    c.least.rays = c.least.rays > FIRST_RAYS_MIN ? c.least.rays : FIRST_RAYS_MIN;
-    c.least.lights = FIRST_LIGHTS_MIN;
+    film->cost_per_variance = cost_per_variance_of_frame(
+        pilot, &c, fixed_cost / (samples * (double)settings->width * (double)settings->height),
+        FIXED_CLEAN * FIXED_CLEAN * samples);
+    c.least = (split_counts){.rays = FIRST_RAYS_MIN, .lights = FIRST_LIGHTS_MIN};
     if (!film->first_splits)
         film->first_splits = malloc((film_block_number(film, right - 1, bottom - 1) + 1) * sizeof *film->first_splits);
     if (!film->first_splits)

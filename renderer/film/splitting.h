@@ -7,8 +7,15 @@
  * and m light samples have the variance (V + G / n + L / m) / N for the cost N (v + n g + m l); their product is least
  * at n = sqrt(G / V * v / g), m = sqrt(L / V * v / l). Where caustics of the mean square C, which cost c, are asked for
  * by chance, with the probability p (roulette), V - C + C / p and v + p c stand for V and v: p = sqrt(C / (V - C) * v /
- * c). Flow: film -> [here] -> the next pass. Threads: a pixel belongs to one worker at a time; decided when no tile is
- * rendered.
+ * c).
+ *
+ * That is best for a block that goes on until it is quiet enough. Where N is fixed, all blocks have the same, and what
+ * counts is the product of the whole frame's variance E and cost C, the latter with what photon maps cost in all,
+ * shared out among the camera samples: it is least at n = sqrt(G / g * C / E), m = sqrt(L / l * C / E), p = sqrt(C' / c
+ * * C / E) (C' the caustics' mean square). A small picture of the whole frame tells C / E. Its samples have their
+ * pixel's middle for place: what differs across a pixel is spread so evenly among samples that little of it is left in
+ * the mean (Mitchell, "Consequences of Stratified Sampling in Graphics", 1996). Flow: film -> [here] -> the next pass.
+ * Threads: a pixel belongs to one worker at a time; decided when no tile is rendered.
  *
  * It is decided for blocks, as in adaptive.h: for the first samples of a fixed number by a small picture of the whole
  * frame, later, when there are so many samples, from the block's own; costs are numbers of rays and no times. How a
@@ -51,9 +58,11 @@ split_counts splitting_most(const ag_render_settings *settings, bool splits_samp
 
 void split_trial_add(split_trial *trial, const eye_sample *sample);
 
-/* Decides the blocks' counts before their first samples, by those of a small picture of the whole frame, all of whose
- * pixels have had so many samples. Errors: AG_ERROR_MEMORY. */
-ag_status splitting_begin(struct ag_film *film, const struct ag_film *pilot, const ag_render_settings *settings);
+/* Decides the blocks' counts before their first samples, and what the frame's samples cost for their variance, by those
+ * of a small picture of the whole frame, all of whose pixels have had so many samples. fixed_cost: of all that does not
+ * depend on the number of samples, as eye_worker_cost counts. Errors: AG_ERROR_MEMORY. */
+ag_status splitting_begin(struct ag_film *film, const struct ag_film *pilot, double fixed_cost,
+                          const ag_render_settings *settings);
 
 /* Decides the blocks' counts where that is due, and returns the number of samples to stop at next. Called while no tile
  * is rendered, before pixels are brought to `wanted` samples; calling it again changes nothing. */

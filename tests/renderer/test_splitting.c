@@ -70,36 +70,63 @@ static void expect_counts(const ag_film *film, int x, uint32_t rays, uint32_t li
         fail_msg("%u gather rays, %u light samples where %u and %u are best", got.rays, got.lights, rays, lights);
 }
 
+/* A block that goes on until it is quiet. */
 static void test_best_numbers(void **state)
 {
     (void)state;
-    /* sqrt(0.04 / 0.04 * 40 / 4) = 3.2 and sqrt(0.02 / 0.04 * 40 / 4) = 2.2; twice that, the fourth root of 16, where
-     * the number of samples is fixed; and sqrt(0.008 / 0.032 * 40 / 40) = 1 / 2 for caustics, which is nearest to 1
-     * then */
+    /* sqrt(0.04 / 0.04 * 40 / 4) = 3.2 and sqrt(0.02 / 0.04 * 40 / 4) = 2.2; and sqrt(0.008 / 0.032 * 40 / 40) = 1 / 2
+     * for caustics, which is nearest to 1 then */
+    ag_render_settings settings = settings_of(0.01f, 16);
+    ag_film *film = create_film(&settings);
+    for (size_t k = 0; k < film_area_count(film); k++)
+        film->wanted[k] = 16;
+    assert_int_equal(splitting_decide(film, &settings, 16), 4);
+    expect_counts(film, 3, 16, 16);
+    add_block(film, 0, 0.04, 0.04, 0.01, 0.008);
+    add_block(film, FILM_BLOCK, 0.04, 0.0, 0.0, 0.0);
+    for (int times = 0; times < 2; times++) { /* again changes nothing */
+        assert_int_equal(splitting_decide(film, &settings, 16), 16);
+        expect_counts(film, 3, 4, 2);
+        expect_counts(film, 11, 1, 1);
+        assert_int_equal(film->splits[film_pixel_at(film, 3, 3)].counts.caustic_bits, 1);
+        assert_int_equal(film->splits[film_pixel_at(film, 11, 3)].counts.caustic_bits, 1);
+    }
+    assert_int_equal(splitting_decide(film, &settings, 4), 4); /* nothing to do */
+    ag_film_destroy(film);
+}
+
+/* One number of samples for all blocks: what their halves have in common decides. */
+static void test_best_numbers_of_frames(void **state)
+{
+    (void)state;
+    /* Caustics without light are asked for by each fourth sample, for 10. Halves that are alike: sqrt(0.64 / 0.04 * 50
+     * / 4) = 14.1 rays, sqrt(0.16 / 0.04 * 50 / 4) = 7.1 light samples; with 150 more for each sample, 28.3 and 14.1.
+     * Where one half has all the samples' own variance and the other all that of rays, these have half of the variance
+     * 0.64 and half of the cost 4: sqrt(0.32 / 0.04 * 56 / 2) = 15.0, with 10 for caustics, 4 for the light sample and
+     * 2 for the other half's ray in the 56. For itself alone, that half would want 64. */
     static const struct {
-        float noise_level;
-        uint32_t rays, lights, no_rays; /* the best; gather rays where they bring no noise */
-        uint32_t caustic_bits, no_caustic_bits;
-    } cases[] = {{0.0f, 8, 4, 8, 0, 2}, {0.01f, 4, 2, 1, 1, 1}};
+        double own[2], by_ray[2], by_light, fixed;
+        uint32_t rays, lights;
+    } cases[] = {{{0.04, 0.04}, {0.64, 0.64}, 0.16, 0.0, 16, 8},
+                 {{0.04, 0.04}, {0.64, 0.64}, 0.16, 150.0, 32, 16},
+                 {{0.0, 0.08}, {0.64, 0.0}, 0.0, 0.0, 16, 1}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-        ag_render_settings settings = settings_of(cases[i].noise_level, 16);
-        ag_film *film = create_film(&settings);
-        if (film->wanted)
-            for (size_t k = 0; k < film_area_count(film); k++)
-                film->wanted[k] = 16;
-        assert_int_equal(splitting_decide(film, &settings, 16), 4);
-        expect_counts(film, 3, 16, 16);
-        add_block(film, 0, 0.04, 0.04, 0.01, 0.008);
-        add_block(film, FILM_BLOCK, 0.04, 0.0, 0.0, 0.0);
-        for (int times = 0; times < 2; times++) { /* again changes nothing */
-            assert_int_equal(splitting_decide(film, &settings, 16), 16);
-            expect_counts(film, 3, cases[i].rays, cases[i].lights);
-            expect_counts(film, 11, cases[i].no_rays, 1);
-            assert_int_equal(film->splits[film_pixel_at(film, 3, 3)].counts.caustic_bits, cases[i].caustic_bits);
-            assert_int_equal(film->splits[film_pixel_at(film, 11, 3)].counts.caustic_bits, cases[i].no_caustic_bits);
-        }
-        assert_int_equal(splitting_decide(film, &settings, 4), 4); /* nothing to do */
+        ag_render_settings settings = settings_of(0.0f, 8), pilots = settings_of(0.0f, 4);
+        ag_film *film = create_film(&settings), *pilot = create_film(&pilots);
+        for (int half = 0; half < 2; half++)
+            add_block(pilot, half * FILM_BLOCK, cases[i].own[half], cases[i].by_ray[half], cases[i].by_light, 0.0);
+        double samples = (double)settings.samples_per_pixel * WIDTH * HEIGHT;
+        assert_int_equal(splitting_begin(film, pilot, cases[i].fixed * samples, &settings), AG_OK);
+        uint32_t first = film->splits[0].counts.rays;
+        for (int half = 0; half < 2; half++)
+            add_block(film, half * FILM_BLOCK, cases[i].own[half], cases[i].by_ray[half], cases[i].by_light, 0.0);
+        assert_int_equal(splitting_decide(film, &settings, 8), 8);
+        split_counts got = film->splits[film_pixel_at(film, 3, 3)].counts;
+        if (first != cases[i].rays || got.rays != cases[i].rays || got.lights != cases[i].lights)
+            fail_msg("%u gather rays at first, %u and %u light samples later where %u and %u are best", first, got.rays,
+                     got.lights, cases[i].rays, cases[i].lights);
         ag_film_destroy(film);
+        ag_film_destroy(pilot);
     }
 }
 
@@ -114,14 +141,15 @@ static void test_first_numbers(void **state)
     settings.width = 5 * WIDTH; /* five blocks of it lie in one of the pilot */
     settings.crop_window[0] = 0.3;
     film = create_film(&settings);
-    assert_int_equal(splitting_begin(film, pilot, &settings), AG_OK);
+    assert_int_equal(splitting_begin(film, pilot, 0.0, &settings), AG_OK);
     for (int times = 0; times < 2; times++) {
         split_counts lit = film->splits[film_pixel_at(film, 31, 3)].counts,
                      dark = film->splits[film_pixel_at(film, 64, 3)].counts;
-        /* Caustics: the root of 2 times sqrt(0.004 / 0.036 * 40 / 40) = 0.47. Likewise sqrt(0.64 / 0.044 * 60 / 4)
-         * gives 20.9 and sqrt(0.16 / 0.044 * 60 / 4) 10.4; in the dark the least of both. */
-        assert_true(lit.rays == 16 && lit.lights == 8 && lit.ray_shift == 0);
-        assert_true(dark.rays == 8 && dark.lights == 4);
+        /* C / E is 1290, in closed form by iteration: sqrt(0.64 / 4 * 1290) = 14.4 rays, sqrt(0.16 / 4 * 1290) = 7.2
+         * light samples, sqrt(0.004 / 40 * 1290) = 0.36 of the caustics; in the dark the least of both. */
+        assert_true(fabs(0.25 * film->cost_per_variance - 1290.0) < 10.0); /* of a variance of 1 a quarter is shown */
+        assert_true(lit.rays == 16 && lit.lights == 8 && lit.caustic_bits == 1 && lit.ray_shift == 0);
+        assert_true(dark.rays == 4 && dark.lights == 4);
         film_clear(film, &settings);
     }
     ag_film_destroy(film);
@@ -138,7 +166,7 @@ static void test_first_numbers_of_the_unknown(void **state)
         for (int k = 0; k < 4; k++)
             film_add(pilot, i, &(eye_sample){.sign = 1, .rest_cost = 1});
     split_counts first = splitting_first(&settings);
-    assert_int_equal(splitting_begin(film, pilot, &settings), AG_OK);
+    assert_int_equal(splitting_begin(film, pilot, 0.0, &settings), AG_OK);
     assert_true(film->splits[0].counts.rays == first.rays && film->splits[0].counts.lights == first.lights);
     assert_true(first.rays == 4 && first.lights == 16);
     ag_film_destroy(film);
@@ -326,7 +354,7 @@ static void test_caustics_by_chance(void **state)
     (void)state;
     if (IS_SANITIZED)
         skip(); /* statistics of what test_same_bits runs */
-    enum { SEEDS = 16 };
+    enum { SEEDS = 24 };
     studio *s = open_room(1, 0.0f);
     s->settings.photon_seed = 7;
     double sum = 0.0, squares = 0.0, always = 0.0;
@@ -347,7 +375,7 @@ static void test_caustics_by_chance(void **state)
         always += mean[1] / SEEDS;
     }
     double mean = sum / SEEDS, error = sqrt((squares / SEEDS - mean * mean) / (SEEDS - 1));
-    print_message("caustics %.6f, by chance %+.6f +- %.6f more; in %u pixels\n", always, mean, error, rare / SEEDS);
+    print_message("caustics %.4e, by chance %+.2e +- %.2e more; in %u pixels\n", always, mean, error, rare / SEEDS);
     assert_true(rare > 0 && always > 0.0 && error < 0.02 * always);
     expect_within("caustics by chance", mean, 0.0, 4.0 * error);
     studio_close(s);
@@ -357,6 +385,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_best_numbers),
+        cmocka_unit_test(test_best_numbers_of_frames),
         cmocka_unit_test(test_first_numbers),
         cmocka_unit_test(test_first_numbers_of_the_unknown),
         cmocka_unit_test(test_bounded_light),
