@@ -1,5 +1,6 @@
 """Blender's procedural textures at points in space, as Cycles computes them: arrays (n, 3) to arrays (n,) and (n, 3)."""
 
+import functools
 import itertools
 
 import numpy as np
@@ -7,6 +8,20 @@ import numpy as np
 NODES = {"TEX_NOISE", "TEX_CHECKER", "TEX_BRICK", "TEX_WAVE", "TEX_GRADIENT", "TEX_VORONOI", "TEX_MUSGRAVE"}
 _NEARLY = 0.000001  # so that faces on a whole number belong to one side
 _SMALLEST = 1e-5
+_POINTS_AT_ONCE = 1 << 14
+
+
+def _by_slices(texture):
+    """The texture of so many points at a time, so that what it needs in between does not grow with their number."""
+    @functools.wraps(texture)
+    def made(points, *rest):
+        if len(points) <= _POINTS_AT_ONCE:
+            return texture(points, *rest)
+        parts = [texture(points[k:k + _POINTS_AT_ONCE], *rest) for k in range(0, len(points), _POINTS_AT_ONCE)]
+        if isinstance(parts[0], tuple):
+            return tuple(np.concatenate(each) for each in zip(*parts))
+        return np.concatenate(parts)
+    return made
 
 
 def _turn(x, k):
@@ -92,6 +107,7 @@ def _offset(seed, dimensions):
     return np.array([100 + 100 * _hash_numbers([seed, float(k)])[0] for k in range(dimensions)])
 
 
+@_by_slices
 def noise(points, detail, roughness, distortion, is_color):
     dimensions = points.shape[-1]
     if distortion:
@@ -104,6 +120,7 @@ def noise(points, detail, roughness, distortion, is_color):
                                for k in (0, 1)], -1)
 
 
+@_by_slices
 def musgrave(points, kind, dimension, lacunarity, detail):
     detail, lacunarity = min(max(float(detail), 0.0), 15.0), max(float(lacunarity), _SMALLEST)
     fall, power = lacunarity ** -max(float(dimension), _SMALLEST), 1.0
@@ -117,12 +134,14 @@ def musgrave(points, kind, dimension, lacunarity, detail):
     return value
 
 
+@_by_slices
 def checker(points):
     """Whether the first colour counts."""
     at = np.abs(np.floor((points + _NEARLY) * (1 - _NEARLY))).astype(np.int64) % 2
     return (at[..., 0] == at[..., 1]) == (at[..., 2] == 1)
 
 
+@_by_slices
 def wave(points, kind, direction, profile, distortion, detail, detail_scale, roughness, phase):
     points = (points + _NEARLY) * (1 - _NEARLY)
     axis = "XYZ".find(direction)
@@ -140,6 +159,7 @@ def wave(points, kind, direction, profile, distortion, detail, detail_scale, rou
     return at - np.floor(at) if profile == "SAW" else 2 * np.abs(at - np.floor(at + 0.5))
 
 
+@_by_slices
 def gradient(points, kind):
     x, y, _ = (points[..., k] for k in range(3))
     if kind in ("SPHERICAL", "QUADRATIC_SPHERE"):
@@ -161,6 +181,7 @@ def _brick_chance(number):
     return 0.5 * made / 1073741824.0
 
 
+@_by_slices
 def brick(points, size, smooth, bias, width, height, offset, offset_rows, squash, squash_rows):
     """How much a point is in the mortar, and how much its brick has the second colour."""
     x, y = points[..., 0], points[..., 1]
@@ -186,6 +207,7 @@ def _jitter(cell):
     return np.stack([_hash_numbers(axes + ([float(k)] if k else [])) for k in range(cell.shape[-1])], -1)
 
 
+@_by_slices
 def voronoi(points, feature, metric, randomness):
     """Distance, and the cell whose colour counts; feature: F1, F2 or DISTANCE_TO_EDGE."""
     dimensions = points.shape[-1]
@@ -217,6 +239,7 @@ def voronoi(points, feature, metric, randomness):
     return edge, of_first
 
 
+@_by_slices
 def cell_color(cell):
     axes = [cell[..., k] for k in range(cell.shape[-1])]
     return np.stack([_hash_numbers(axes + ([float(k)] if k else [])) for k in range(3)], -1)
