@@ -221,7 +221,10 @@ class Materials:
         if output.inputs["Displacement"].is_linked:
             self._notes.say(f"{baker.graph.name}: its displacement is not translated")
         medium = self._make_medium(baker, output.inputs["Volume"])
-        surface = closures.translate(baker, output.inputs["Surface"], ())
+        if source(output.inputs["Surface"], ())[0] is None and source(output.inputs["Volume"], ())[0] is not None:
+            surface = closures.Surface(is_transparent=True)  # what has a volume alone lets light in, as in Cycles
+        else:
+            surface = closures.translate(baker, output.inputs["Surface"], ())
         return self._finish(baker, surface, medium)
 
     def _make_medium(self, baker, socket):
