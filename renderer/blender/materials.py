@@ -1,9 +1,11 @@
 """Blender's materials as the renderer's: what a node tree says of surface, emission and alpha, with pictures baked to
 sheets of the material's own coordinates."""
 
+import itertools
 import math
 from collections import namedtuple
 
+import bpy
 import numpy as np
 
 from . import closures, pictures
@@ -166,10 +168,22 @@ class Materials:
 
     def __init__(self, scene, notes, override):
         self._scene, self._notes, self._override = scene, notes, override
-        self._looks, self._in_space, self._wants_space = {}, [], {}
+        self._looks, self._wants_space = {}, {}
+        self._given, self._of_file = {}, {material.name_full for material in bpy.data.materials}
 
     def names(self):
-        return [look.name for look in self._looks.values()] + self._in_space
+        return list(self._given)
+
+    def _new_name(self, material):
+        """The material's own name where nothing has it yet, else with a number: one that no other material of the file has."""
+        own = material.name_full if material else "(none)"
+        if own in self._given or (material is None and own in self._of_file):
+            numbered = (f"{own}#{k}" for k in itertools.count(max(len(self._given), 1)))
+            name = next(name for name in numbered if name not in self._given and name not in self._of_file)
+        else:
+            name = own
+        self._given[name] = True
+        return name
 
     def look_of_mesh(self, material):
         """As look, but of a material with procedural textures one whose layout is IN_SPACE; look_in_space has what its
@@ -186,10 +200,7 @@ class Materials:
     def look_in_space(self, look, part, pixels):
         """The look of one part, and the part with coordinates by its atlas, of about so many pixels."""
         atlas = Atlas(part.corners, pixels)
-        name = look.name
-        while name in self._in_space or name in self._looks:
-            name = f"{look.name}#{len(self._in_space)}"
-        self._in_space.append(name)
+        name = self._new_name(look.shape)
         if atlas.is_coarse:
             self._notes.say(f'material "{look.name}": on a mesh of so many triangles its textures have one colour for each')
         baker = Baker(self._scene, look.shape, self._notes, name, atlas)
@@ -204,13 +215,13 @@ class Materials:
         return self._looks[key]
 
     def _make(self, material):
+        name = self._new_name(material)
         if material is None or not material.use_nodes or not material.node_tree:
-            name = "(none)" if material is None else material.name_full
             color = (0.8, 0.8, 0.8) if material is None else material.diffuse_color[:3]
             self._scene.material(name, "diffuse", {"rgb reflectance": np.clip(color, 0, 1)})
             return Look(name, {}, None, None)
         output = material.node_tree.get_output_node("CYCLES")
-        baker = Baker(self._scene, material, self._notes)
+        baker = Baker(self._scene, material, self._notes, name)
         if output is None:
             self._scene.material(baker.name, "diffuse", {"rgb reflectance": (0, 0, 0)})
             return Look(baker.name, {}, None, None)
