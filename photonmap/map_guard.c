@@ -21,8 +21,10 @@ typedef struct guard {
 
 static guard guards[GUARDS_MAX];
 static pthread_mutex_t handler_mutex = PTHREAD_MUTEX_INITIALIZER; /* who installs the handler */
-static struct sigaction handled_before;
-static _Thread_local volatile sig_atomic_t is_passed_on; /* the fault is the other handler's, which may call ours */
+/* The handlers that ours has replaced: at last, which may call ours in turn, and at first, which cannot know of it. */
+static struct sigaction handled_before, handled_first;
+static bool is_installed;
+static _Thread_local volatile sig_atomic_t is_passed_on; /* the fault is the other handler's */
 
 static void on_bus_error(int number, siginfo_t *info, void *context)
 {
@@ -41,18 +43,19 @@ static void on_bus_error(int number, siginfo_t *info, void *context)
             return;
     }
     /* not ours: as if this handler were not there */
-    if (is_passed_on || (!(handled_before.sa_flags & SA_SIGINFO) &&
-                         (handled_before.sa_handler == SIG_DFL || handled_before.sa_handler == SIG_IGN))) {
+    const sig_atomic_t was_passed_on = is_passed_on;
+    const struct sigaction *other = was_passed_on ? &handled_first : &handled_before;
+    if (!(other->sa_flags & SA_SIGINFO) && (other->sa_handler == SIG_DFL || other->sa_handler == SIG_IGN)) {
         signal(number, SIG_DFL);
         raise(number);
         return;
     }
     is_passed_on = 1;
-    if (handled_before.sa_flags & SA_SIGINFO)
-        handled_before.sa_sigaction(number, info, context);
+    if (other->sa_flags & SA_SIGINFO)
+        other->sa_sigaction(number, info, context);
     else
-        handled_before.sa_handler(number);
-    is_passed_on = 0;
+        other->sa_handler(number);
+    is_passed_on = was_passed_on;
 }
 
 /* Others may have put theirs in its place since the last mapping. */
@@ -62,6 +65,9 @@ static void install_handler(void)
     sigemptyset(&action.sa_mask);
     pthread_mutex_lock(&handler_mutex);
     if (sigaction(SIGBUS, NULL, &now) == 0 && !(now.sa_flags & SA_SIGINFO && now.sa_sigaction == on_bus_error)) {
+        if (!is_installed)
+            handled_first = now;
+        is_installed = true;
         handled_before = now;
         sigaction(SIGBUS, &action, NULL);
     }

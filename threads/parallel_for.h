@@ -10,8 +10,7 @@
 typedef void parallel_for_fn(void *user, uint64_t begin, uint64_t end, uint64_t block_index, unsigned worker_index);
 
 /* Calls fn for every block of [0, count), blocks in ascending order of claiming. block_size >= 1; the blocks do not
- * depend on the number of workers. Stops between blocks when the run is cancelled, or
- * what it watches is lost.
+ * depend on the number of workers. Stops between blocks when the run is cancelled, or what it watches is lost.
  * phase: whose progress this is, told as (done blocks / blocks) mapped into [progress_begin, progress_end];
  * progress_end <= progress_begin tells nothing.
  * Returns AG_OK, or AG_CANCELLED when some block was not done. */

@@ -12,8 +12,8 @@ extern "C" {
 
 enum { IMAGE_SIGNATURE_BYTES = 16 }; /* how many of the first bytes tell */
 
-/* The reader's name; NULL: it is no picture of a format that is read. path: its ending decides only between formats
- * that cannot be told by their bytes. */
+/* The reader's name; NULL: it is no picture of a format that is read. path: its ending decides where bytes do not:
+ * between formats that have none of their own, and for cameras' raw pictures, which look like TIFF files. */
 const char *image_signature_reader(const char *path, const unsigned char *bytes, size_t size);
 
 #ifdef __cplusplus
