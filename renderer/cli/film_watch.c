@@ -82,7 +82,7 @@ static void draw(film_watch *w, FILE *terminal, terminal_size *size)
     terminal_picture_reduce(w->pixels, w->width, w->height, w->shown, width, height);
     if (ag_view_apply(w->view, w->shown, (size_t)width * (size_t)height) != AG_OK)
         return;
-    char *text;
+    char *text = NULL;
     size_t length;
     FILE *made = open_memstream(&text, &length);
     if (!made)

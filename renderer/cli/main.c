@@ -395,6 +395,7 @@ static int run_program(int argc, char **argv)
         status = page_server_start(o.serve_address ? o.serve_address : "127.0.0.1", o.serve_port, &told, &o.page);
     if (status == AG_OK)
         status = o.frames.count > 0 ? run_frames(&o, &told, &last) : run_in_context(&o, -1, &told, NULL);
+    progress_finish(&told); /* where no context was made, too */
     ag_context_destroy(last);
     page_server_stop(o.page);
     display_server_stop(o.display);

@@ -96,14 +96,13 @@ int terminal_picture_write_sixels(FILE *file, const float *shown, int width, int
                                   int color_count, int drawn_rows)
 {
     const int rows = (height + terminal->cell_height - 1) / terminal->cell_height;
-    char *text;
+    char *text = NULL;
     size_t length;
     FILE *made = open_memstream(&text, &length);
     if (!made)
         return 0;
-    const bool is_whole = sixel_write(made, shown, width, height, color_count);
-    if (fclose(made) != 0)
-        return 0;
+    bool is_whole = sixel_write(made, shown, width, height, color_count);
+    is_whole = fclose(made) == 0 && is_whole;
     if (is_whole) {
         fputc('\r', file);
         if (rows != drawn_rows) {

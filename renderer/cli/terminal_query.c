@@ -75,12 +75,23 @@ static void learn(const sequence *s, terminal_abilities *out)
     }
 }
 
-static bool write_all(int terminal, const char *text)
+/* Waits for POLLIN or POLLOUT. False: it has not come in that time, or never will. */
+static bool is_ready(int terminal, short event, double until)
+{
+    struct pollfd asked = {.fd = terminal, .events = event};
+    const double left = until - passes_seconds();
+    return poll(&asked, 1, left > 0.0 ? (int)(left * 1e3) + 1 : 0) == 1 && (asked.revents & event);
+}
+
+/* False: not all of it, since the terminal takes nothing. */
+static bool write_all(int terminal, const char *text, double until)
 {
     size_t left = strlen(text);
     while (left > 0) {
+        if (!is_ready(terminal, POLLOUT, until))
+            return false;
         const ssize_t written = write(terminal, text, left);
-        if (written < 0 && errno != EINTR)
+        if (written < 0 && ((errno != EINTR && errno != EAGAIN) || passes_seconds() > until))
             return false;
         text += written > 0 ? written : 0;
         left -= written > 0 ? (size_t)written : 0;
@@ -88,22 +99,14 @@ static bool write_all(int terminal, const char *text)
     return true;
 }
 
-static bool is_readable(int terminal, double seconds)
-{
-    struct pollfd asked = {.fd = terminal, .events = POLLIN};
-    return poll(&asked, 1, seconds > 0.0 ? (int)(seconds * 1e3) + 1 : 0) == 1 && (asked.revents & POLLIN);
-}
-
 /* Asks, and learns from the answers until the terminal has told its kind. False: it has not. */
 static bool ask(int terminal, const char *question, double until, terminal_abilities *out)
 {
     char got[ANSWER_MOST];
     size_t length = 0;
-    if (!write_all(terminal, question))
+    if (!write_all(terminal, question, until))
         return false;
-    for (double left; length < sizeof got && (left = until - passes_seconds()) > 0.0;) {
-        if (!is_readable(terminal, left))
-            continue;
+    while (length < sizeof got && is_ready(terminal, POLLIN, until)) {
         const ssize_t more = read(terminal, got + length, sizeof got - length);
         if (more <= 0)
             return false;
@@ -123,7 +126,7 @@ static bool ask(int terminal, const char *question, double until, terminal_abili
 static bool ask_all(int terminal, terminal_abilities *out)
 {
     const double until = passes_seconds() + PATIENCE_SECONDS;
-    if (is_readable(terminal, 0.0))
+    if (is_ready(terminal, POLLIN, 0.0))
         return false;
     bool is_whole = ask(terminal, ASK_KIND, until, out);
     if (is_whole && out->has_sixels)
@@ -138,8 +141,9 @@ bool terminal_query(int descriptor, terminal_abilities *out)
     *out = (terminal_abilities){.color_count = USUAL_COLORS};
     struct termios before, during;
     sigset_t all, signals_before;
-    /* a session has one controlling terminal */
-    const int terminal = tcgetsid(descriptor) == getsid(0) ? open("/dev/tty", O_RDWR | O_NOCTTY | O_CLOEXEC) : -1;
+    /* a session has one controlling terminal; opened anew, since O_NONBLOCK holds for all who share what was opened */
+    const int terminal =
+        tcgetsid(descriptor) == getsid(0) ? open("/dev/tty", O_RDWR | O_NOCTTY | O_CLOEXEC | O_NONBLOCK) : -1;
     if (terminal < 0)
         return false;
     sigfillset(&all);
@@ -163,6 +167,8 @@ bool terminal_query(int descriptor, terminal_abilities *out)
 
 void terminal_query_forget(void)
 {
-    if (owed_terminal >= 0)
-        tcflush((int)owed_terminal, TCIFLUSH);
+    const int terminal = (int)owed_terminal;
+    /* in the background SIGTTOU would stop the process, and what is typed is another's */
+    if (terminal >= 0 && tcgetpgrp(terminal) == getpgrp())
+        tcflush(terminal, TCIFLUSH);
 }
