@@ -43,31 +43,16 @@ static const signature SIGNATURES[] = {
     SIGNATURE("fits", 0, "SIMPLE"),
 };
 
-typedef struct named_reader {
-    const char *ending, *reader;
-} named_reader;
-
 /* Formats without bytes of their own. */
-static const named_reader ENDINGS[] = {{".tga", "targa"}, {".tpic", "targa"}, {".vda", "targa"},
-                                       {".icb", "targa"}, {".vst", "targa"},  {".rla", "rla"},
-                                       {".rpf", "rla"},   {".ico", "ico"},    {".pic", "softimage"}};
+static const struct {
+    const char *ending, *reader;
+} ENDINGS[] = {{".tga", "targa"}, {".tpic", "targa"}, {".vda", "targa"}, {".icb", "targa"},    {".vst", "targa"},
+               {".rla", "rla"},   {".rpf", "rla"},    {".ico", "ico"},   {".pic", "softimage"}};
 
 /* Cameras' raw pictures: most begin as TIFF files, whose reader would show the small picture that they hold. */
-static const named_reader RAW_ENDINGS[] = {
-    {".3fr", "raw"}, {".arw", "raw"}, {".cr2", "raw"}, {".cr3", "raw"}, {".crw", "raw"},
-    {".dcr", "raw"}, {".dng", "raw"}, {".erf", "raw"}, {".iiq", "raw"}, {".kdc", "raw"},
-    {".mef", "raw"}, {".mos", "raw"}, {".mrw", "raw"}, {".nef", "raw"}, {".nrw", "raw"},
-    {".orf", "raw"}, {".pef", "raw"}, {".raf", "raw"}, {".raw", "raw"}, {".rw2", "raw"},
-    {".rwl", "raw"}, {".sr2", "raw"}, {".srf", "raw"}, {".srw", "raw"}, {".x3f", "raw"}};
-
-static const char *reader_of_ending(const char *path, const named_reader *endings, size_t count)
-{
-    const char *ending = strrchr(path, '.');
-    for (size_t i = 0; ending && i < count; i++)
-        if (strcasecmp(ending, endings[i].ending) == 0)
-            return endings[i].reader;
-    return NULL;
-}
+static const char *const RAW_ENDINGS[] = {".3fr", ".arw", ".cr2", ".cr3", ".crw", ".dcr", ".dng", ".erf", ".iiq",
+                                          ".kdc", ".mef", ".mos", ".mrw", ".nef", ".nrw", ".orf", ".pef", ".raf",
+                                          ".raw", ".rw2", ".rwl", ".sr2", ".srf", ".srw", ".x3f"};
 
 /* PBM, PGM, PPM and PFM. */
 static bool is_portable_map(const unsigned char *bytes, size_t size)
@@ -78,9 +63,10 @@ static bool is_portable_map(const unsigned char *bytes, size_t size)
 
 const char *image_signature_reader(const char *path, const unsigned char *bytes, size_t size)
 {
-    const char *raw = reader_of_ending(path, RAW_ENDINGS, sizeof RAW_ENDINGS / sizeof RAW_ENDINGS[0]);
-    if (raw)
-        return raw;
+    const char *ending = strrchr(path, '.');
+    for (size_t i = 0; ending && i < sizeof RAW_ENDINGS / sizeof RAW_ENDINGS[0]; i++)
+        if (strcasecmp(ending, RAW_ENDINGS[i]) == 0)
+            return "raw";
     for (size_t i = 0; i < sizeof SIGNATURES / sizeof SIGNATURES[0]; i++) {
         const signature *s = &SIGNATURES[i];
         if (size >= s->at + s->size && memcmp(bytes + s->at, s->bytes, s->size) == 0)
@@ -88,5 +74,8 @@ const char *image_signature_reader(const char *path, const unsigned char *bytes,
     }
     if (is_portable_map(bytes, size))
         return "pnm";
-    return reader_of_ending(path, ENDINGS, sizeof ENDINGS / sizeof ENDINGS[0]);
+    for (size_t i = 0; ending && i < sizeof ENDINGS / sizeof ENDINGS[0]; i++)
+        if (strcasecmp(ending, ENDINGS[i].ending) == 0)
+            return ENDINGS[i].reader;
+    return NULL;
 }
