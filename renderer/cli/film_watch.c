@@ -46,7 +46,8 @@ void film_watch_erase(film_watch *w, FILE *terminal)
     w->version = 0; /* it is to be drawn again */
 }
 
-/* What the terminal tells with its size holds, since a window's characters may change. */
+/* Fills in the size of a character where the system does not tell it with the window's size: the terminal's answer from
+ * the beginning stands in, though the characters may have changed since. */
 static void complete_size(const terminal_abilities *abilities, terminal_size *in_out_size)
 {
     if (in_out_size->cell_width > 0 && in_out_size->cell_height > 0)

@@ -288,8 +288,9 @@ static void add_group(const block_sums *sums, double cost_per_variance, const ch
         sums->cost_of_rest + sums->cost_of_ray * rays + sums->cost_of_light * lights + sums->cost_of_caustic * caustics;
 }
 
-/* What the frame's camera samples cost for their variance when all blocks have the best numbers. fixed: the cost of all
- * else for each of them. */
+/* Returns the cost of the frame's camera samples divided by their variance, when all blocks have the best numbers.
+ * fixed: each camera sample's share of the cost that does not depend on their number. clean: the least variance of a
+ * camera sample that counts. */
 static double cost_per_variance_of_frame(const struct ag_film *pilot, const choice *c, double fixed, double clean)
 {
     double out = 0.0;

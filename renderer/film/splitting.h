@@ -9,9 +9,10 @@
  * by chance, with the probability p (roulette), V - C + C / p and v + p c stand for V and v: p = sqrt(C / (V - C) * v /
  * c).
  *
- * That is best for a block that goes on until it is quiet enough. Where N is fixed, all blocks have the same, and what
- * counts is the product of the whole frame's variance E and cost C, the latter with what photon maps cost in all,
- * shared out among the camera samples: it is least at n = sqrt(G / g * C / E), m = sqrt(L / l * C / E), p = sqrt(C' / c
+ * These numbers are best for a block that goes on until it is quiet enough. Where N is fixed, all blocks have the same
+ * N, and what counts is the product of the whole frame's variance E and cost C, the latter with what photon maps cost
+ * in all, shared out among the camera samples: it is least at n = sqrt(G / g * C / E), m = sqrt(L / l * C / E), p =
+ * sqrt(C' / c
  * * C / E) (C' the caustics' mean square). A small picture of the whole frame tells C / E. Its samples have their
  * pixel's middle for place: what differs across a pixel is spread so evenly among samples that little of it is left in
  * the mean (Mitchell, "Consequences of Stratified Sampling in Graphics", 1996). Flow: film -> [here] -> the next pass.

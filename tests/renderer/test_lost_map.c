@@ -128,7 +128,7 @@ static void assert_broken_off(work *w, ag_rendering *rendering)
     assert_int_equal(ag_rendering_sample_counts(rendering).most, 1);
 }
 
-/* What follows in the context is as ever. */
+/* Expects that the context renders another picture as if no map had been lost. */
 static void assert_works_on(work *w)
 {
     w->settings.samples_per_pixel = 1;
@@ -214,7 +214,8 @@ static void computing_beforehand_is_broken_off(void **state)
     }
 }
 
-/* What was learned before the first sample is learned anew when the first pass is dropped. */
+/* When the first pass is dropped, the rendering runs its pilot again, and the picture has the bits of an undisturbed
+ * one. */
 static void the_first_pass_is_broken_off(void **state)
 {
     (void)state;
