@@ -37,13 +37,18 @@ ag_status film_watch_show(film_watch *w, const ag_film *film)
     return w->film ? AG_OK : AG_ERROR_MEMORY;
 }
 
+void film_watch_leave(film_watch *w)
+{
+    w->drawn_rows = 0;
+    w->version = 0; /* it is to be drawn again */
+}
+
 void film_watch_erase(film_watch *w, FILE *terminal)
 {
     if (w->drawn_rows == 0)
         return;
     terminal_picture_erase(terminal, w->drawn_rows);
-    w->drawn_rows = 0;
-    w->version = 0; /* it is to be drawn again */
+    film_watch_leave(w);
 }
 
 /* Fills in the size of a character where the system does not tell it with the window's size: the terminal's answer from
@@ -62,16 +67,15 @@ static bool is_same_size(const terminal_size *a, const terminal_size *b)
            a->cell_height == b->cell_height;
 }
 
-static void write_picture(film_watch *w, FILE *made, const terminal_size *size, int width, int height,
-                          bool is_by_sixels)
+/* How many rows it has; 0: it could not be made. drawn_rows: those of the picture in whose place it is. */
+static int write_picture(const film_watch *w, FILE *made, const terminal_size *size, int width, int height,
+                         bool is_by_sixels, int drawn_rows)
 {
-    if (is_by_sixels) {
-        w->drawn_rows = terminal_picture_write_sixels(made, w->shown, width, height, size, w->abilities->color_count,
-                                                      w->drawn_rows);
-        return;
-    }
-    terminal_picture_erase(made, w->drawn_rows);
-    w->drawn_rows = terminal_picture_write(made, w->shown, width, height);
+    if (is_by_sixels)
+        return terminal_picture_write_sixels(made, w->shown, width, height, size, w->abilities->color_count,
+                                             drawn_rows);
+    terminal_picture_erase(made, drawn_rows);
+    return terminal_picture_write(made, w->shown, width, height);
 }
 
 static void draw(film_watch *w, FILE *terminal, terminal_size *size)
@@ -89,12 +93,13 @@ static void draw(film_watch *w, FILE *terminal, terminal_size *size)
     if (!made)
         return;
     /* in a terminal of another size the rows have wrapped or gone: the picture begins anew below them */
-    if (!is_same_size(size, &w->drawn_in))
-        w->drawn_rows = 0;
-    write_picture(w, made, size, width, height, is_by_sixels);
-    w->drawn_in = *size;
-    if (fclose(made) == 0) /* at once: standard error has no buffer */
+    const int drawn_rows = is_same_size(size, &w->drawn_in) ? w->drawn_rows : 0;
+    const int rows = write_picture(w, made, size, width, height, is_by_sixels, drawn_rows);
+    if (fclose(made) == 0 && rows > 0) { /* at once: standard error has no buffer */
         fwrite(text, 1, length, terminal);
+        w->drawn_rows = rows;
+        w->drawn_in = *size;
+    }
     free(text);
 }
 

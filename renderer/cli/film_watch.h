@@ -37,6 +37,8 @@ ag_status film_watch_show(film_watch *w, const ag_film *film);
 /* Draws the picture in place of the one before, where there is a new one and drawing has not just been done; is_last:
  * in any case. The cursor is then at the line below, which is empty. */
 void film_watch_draw(film_watch *w, FILE *terminal, double now_seconds, bool is_last);
+/* Leaves what is drawn where it stands: the next picture begins below the cursor. */
+void film_watch_leave(film_watch *w);
 /* Takes the picture away, so that a message can stand there. */
 void film_watch_erase(film_watch *w, FILE *terminal);
 

@@ -191,6 +191,18 @@ static void clear_all(progress *p)
     clear_bar(p);
 }
 
+/* Draws the picture; below what a shell has written while the process was stopped, if it was. */
+static void draw_film(progress *p, double now, bool is_last)
+{
+    if (signals_take_stopped()) {
+        film_watch_leave(&p->watch);
+        p->bar_is_shown = false;
+    }
+    signals_begin_drawing();
+    film_watch_draw(&p->watch, stderr, now, is_last);
+    signals_end_drawing();
+}
+
 static void tell_frame_as_json(const progress *p)
 {
     if (p->frame_count > 0)
@@ -235,7 +247,7 @@ void progress_tell(void *user, ag_phase phase, double fraction)
         p->told_percent = percent;
     switch (p->style) {
     case PROGRESS_PICTURE:
-        film_watch_draw(&p->watch, stderr, now, false);
+        draw_film(p, now, false);
         tell_bar(p, frame, left);
         break;
     case PROGRESS_BAR: tell_bar(p, frame, left); break;
@@ -353,7 +365,7 @@ void progress_leave_film(progress *p, bool is_drawn)
     if (p->watch.film)
         clear_bar(p);
     if (is_drawn)
-        film_watch_draw(&p->watch, stderr, passes_seconds(), true);
+        draw_film(p, passes_seconds(), true);
     film_watch_end(&p->watch);
     pthread_mutex_unlock(&terminal);
 }

@@ -4,8 +4,11 @@
 
 #include "terminal_query.h"
 
+#include <errno.h>
 #include <math.h>
+#include <poll.h>
 #include <signal.h>
+#include <stdatomic.h>
 #include <stddef.h>
 #include <sys/time.h>
 #include <unistd.h>
@@ -13,27 +16,90 @@
 static ag_context *signalled_context;
 static volatile sig_atomic_t stop_signal, wants_snapshot, is_rendering;
 
-static volatile sig_atomic_t resets_terminal, ends_sixels;
+static volatile sig_atomic_t resets_terminal, ends_sixels, was_stopped;
+/* Of the thread that draws and of the handler of SIGTSTP, which may run on any thread. */
+static atomic_int drawing_state;
+enum { DRAWING_NOTHING, DRAWING, DRAWING_BEFORE_STOP };
 
 static bool is_released; /* signals are blocked, by us */
 
 static const int STOPPING[] = {SIGINT, SIGTERM, SIGHUP, SIGXCPU};
 
+/* A terminal that is held (Ctrl-S) takes nothing, and would hold the process with it. */
+static void write_to_terminal(const char *text, size_t length)
+{
+    enum { PATIENCE_MS = 1000 };
+    struct pollfd asked = {.fd = STDERR_FILENO, .events = POLLOUT};
+    const ssize_t ignored =
+        poll(&asked, 1, PATIENCE_MS) == 1 && (asked.revents & POLLOUT) ? write(STDERR_FILENO, text, length) : 0;
+    (void)ignored;
+}
+
 static void reset_terminal(void)
 {
-    static const char END_SIXELS[] = "\033\\", RESET[] = "\033[0m\r\n";
+    static const char TEXT[] = "\033\\\033[0m\r\n"; /* the first two end a picture of sixels */
+    const size_t skipped = ends_sixels ? 0 : 2;
+    write_to_terminal(TEXT + skipped, sizeof TEXT - 1 - skipped);
+}
+
+static void leave_terminal(void)
+{
     if (!resets_terminal)
         return;
-    ssize_t ignored = ends_sixels ? write(STDERR_FILENO, END_SIXELS, sizeof END_SIXELS - 1) : 0;
-    ignored = write(STDERR_FILENO, RESET, sizeof RESET - 1);
-    (void)ignored;
+    reset_terminal();
     terminal_query_forget();
+}
+
+/* In the handler of SIGTSTP: the process stops here, as it would without the handler, and goes on here. */
+static void stop_process(int number)
+{
+    struct sigaction by_default = {.sa_handler = SIG_DFL}, before;
+    sigset_t own;
+    reset_terminal();
+    sigaction(number, &by_default, &before);
+    raise(number);
+    sigemptyset(&own);
+    sigaddset(&own, number);
+    pthread_sigmask(SIG_UNBLOCK, &own, NULL);
+    pthread_sigmask(SIG_BLOCK, &own, NULL);
+    sigaction(number, &before, NULL);
+    was_stopped = 1;
+}
+
+static void on_terminal_stop(int number)
+{
+    int drawing = DRAWING, waiting = DRAWING_BEFORE_STOP;
+    const int error = errno;
+    if (!atomic_compare_exchange_strong(&drawing_state, &drawing, DRAWING_BEFORE_STOP)) {
+        atomic_compare_exchange_strong(&drawing_state, &waiting, DRAWING); /* that stop is this one */
+        stop_process(number);
+    }
+    errno = error;
 }
 
 void signals_reset_terminal(bool has_sixels)
 {
+    struct sigaction before, action = {.sa_handler = on_terminal_stop, .sa_flags = SA_RESTART};
     ends_sixels = has_sixels;
     resets_terminal = 1;
+    /* a shell without job control has it ignored */
+    if (sigaction(SIGTSTP, NULL, &before) == 0 && before.sa_handler != SIG_IGN)
+        sigaction(SIGTSTP, &action, NULL);
+}
+
+void signals_begin_drawing(void) { atomic_store(&drawing_state, DRAWING); }
+
+void signals_end_drawing(void)
+{
+    if (atomic_exchange(&drawing_state, DRAWING_NOTHING) == DRAWING_BEFORE_STOP)
+        kill(getpid(), SIGTSTP); /* this thread may be one that takes no signals */
+}
+
+bool signals_take_stopped(void)
+{
+    const bool was = was_stopped;
+    was_stopped = 0;
+    return was;
 }
 
 static void on_stop(int number)
@@ -41,7 +107,7 @@ static void on_stop(int number)
     if (stop_signal && number == SIGXCPU)
         return; /* it comes every second beyond the limit */
     if (stop_signal) {
-        reset_terminal();
+        leave_terminal();
         ag_abandon_files();
         _exit(128 + number);
     }
@@ -84,7 +150,7 @@ static void on_abort(int number)
         "afterglow: error: a library has given up, for the reason above if there is one; most often threads or memory are "
         "limited: try -t with fewer threads, or higher limits (ulimit -u, ulimit -v)\n";
     (void)number;
-    reset_terminal();
+    leave_terminal();
     ssize_t ignored = write(STDERR_FILENO, TEXT, sizeof TEXT - 1);
     (void)ignored;
     ag_abandon_files();

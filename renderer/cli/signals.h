@@ -1,5 +1,6 @@
 /* signals.h: what the system tells the program while it works: stop, show the picture so far, time is up.
- * Flow: handlers -> [here] -> main, passes. Threads: main alone asks; handlers do no more than set flags. */
+ * Flow: handlers -> [here] -> main, passes. Threads: main alone asks, but
+ * for the drawing; handlers do no more than set flags, end the process or stop it. */
 #ifndef AFTERGLOW_SIGNALS_H
 #define AFTERGLOW_SIGNALS_H
 
@@ -10,9 +11,16 @@
 /* A library that aborts, since it cannot have threads or memory, ends the program with 3 and a message. */
 void signals_catch_abort(void);
 
-/* From now on a signal that ends the process at once ends what is drawn by sixels, where has_sixels, resets the
- * terminal's attributes, begins a line, and takes a late answer of the terminal's away. */
+/* From now on a signal that ends the process at once, or stops it (SIGTSTP, as Ctrl-Z sends it), ends what is drawn by
+ * sixels, where has_sixels, resets the terminal's attributes and begins a line, if the terminal takes that within a
+ * second; one that ends it takes a late answer of the terminal's away too. */
 void signals_reset_terminal(bool has_sixels);
+/* Between these two calls the first SIGTSTP waits for the second call, so that the drawing is whole; the next one stops
+ * the process at once. To be called by one thread at a time. */
+void signals_begin_drawing(void);
+void signals_end_drawing(void);
+/* Whether the process was stopped by SIGTSTP since this was called last: others may have written to the terminal. */
+bool signals_take_stopped(void);
 
 /* The first SIGINT, SIGTERM, SIGHUP or SIGXCPU (a soft limit of CPU time) lets the work end in order: rendering pauses,
  * all else is cancelled. The second ends the process at once, but for SIGXCPU, which the system repeats. */

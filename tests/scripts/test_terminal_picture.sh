@@ -3,21 +3,9 @@
 # is drawn anew stands in its place; messages stand above it; signals leave the terminal as it was; where there is no
 # terminal there are no codes.
 set -euo pipefail
-# shellcheck source=tests/fixtures/shell_test.sh
-source "$(dirname "${BASH_SOURCE[0]}")/../fixtures/shell_test.sh"
-need python3
-cd "$folder"
-unset OCIO
+# shellcheck source=tests/fixtures/terminal_test.sh
+source "$(dirname "${BASH_SOURCE[0]}")/../fixtures/terminal_test.sh"
 
-cat >halves.pbrt <<'END'
-Film "rgb" "integer xresolution" 32 "integer yresolution" 15
-Camera "perspective" "float fov" 90
-WorldBegin
-AreaLightSource "diffuse" "rgb L" [1 0 0] "bool twosided" true
-Shape "trianglemesh" "point3 P" [-9 -9 1  0 -9 1  0 9 1  -9 9 1] "integer indices" [0 1 2 0 2 3]
-AreaLightSource "diffuse" "rgb L" [0 1 0] "bool twosided" true
-Shape "trianglemesh" "point3 P" [0 -9 1  9 -9 1  9 9 1  0 9 1] "integer indices" [0 1 2 0 2 3]
-END
 python3 -B "$root/tests/fixtures/terminal_picture.py" "$AFTERGLOW_PROGRAM" || fail "the picture in the terminal is wrong"
 
 picture=(--progress picture --integrator path --noise 0 -o a.exr halves.pbrt)

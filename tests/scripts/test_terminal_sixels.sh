@@ -3,21 +3,9 @@
 # terminal's number of colours allows; one picture in its place; terminals that have none, are silent or late have half
 # blocks; no answer, and no other mode of the terminal, is left behind.
 set -euo pipefail
-# shellcheck source=tests/fixtures/shell_test.sh
-source "$(dirname "${BASH_SOURCE[0]}")/../fixtures/shell_test.sh"
-need python3
-cd "$folder"
-unset OCIO
+# shellcheck source=tests/fixtures/terminal_test.sh
+source "$(dirname "${BASH_SOURCE[0]}")/../fixtures/terminal_test.sh"
 
-cat >halves.pbrt <<'END'
-Film "rgb" "integer xresolution" 32 "integer yresolution" 15
-Camera "perspective" "float fov" 90
-WorldBegin
-AreaLightSource "diffuse" "rgb L" [1 0 0] "bool twosided" true
-Shape "trianglemesh" "point3 P" [-9 -9 1  0 -9 1  0 9 1  -9 9 1] "integer indices" [0 1 2 0 2 3]
-AreaLightSource "diffuse" "rgb L" [0 1 0] "bool twosided" true
-Shape "trianglemesh" "point3 P" [0 -9 1  9 -9 1  9 9 1  0 9 1] "integer indices" [0 1 2 0 2 3]
-END
 cat >balls.pbrt <<'END'
 Film "rgb" "integer xresolution" 32 "integer yresolution" 15
 LookAt 0 0 0  0 0 1  0 1 0
