@@ -5,7 +5,7 @@ import itertools
 
 import numpy as np
 
-NODES = {"TEX_NOISE", "TEX_CHECKER", "TEX_BRICK", "TEX_WAVE", "TEX_GRADIENT", "TEX_VORONOI", "TEX_MUSGRAVE"}
+NODES = {"TEX_NOISE", "TEX_CHECKER", "TEX_BRICK", "TEX_WAVE", "TEX_GRADIENT", "TEX_VORONOI", "TEX_MUSGRAVE", "TEX_MAGIC"}
 _NEARLY = 0.000001  # so that faces on a whole number belong to one side
 _SMALLEST = 1e-5
 _POINTS_AT_ONCE = 1 << 14
@@ -171,6 +171,25 @@ def gradient(points, kind):
     made = {"QUADRATIC": lambda: np.maximum(x, 0) ** 2, "DIAGONAL": lambda: 0.5 * (x + y),
             "RADIAL": lambda: np.arctan2(y, x) / (2 * np.pi) + 0.5}.get(kind, lambda: x)()
     return np.clip(made, 0, 1)
+
+
+# What each further depth of a Magic texture puts in place of a coordinate: which one, of what function and with what sign,
+# and the signs of x, y and z in its argument.
+_MAGIC = ((1, np.cos, -1, (1, -1, 1)), (0, np.cos, 1, (1, -1, -1)), (2, np.sin, 1, (-1, -1, -1)),
+          (0, np.cos, -1, (-1, 1, -1)), (1, np.sin, -1, (-1, 1, 1)), (1, np.cos, -1, (-1, 1, 1)), (0, np.cos, 1, (1, 1, 1)),
+          (2, np.sin, 1, (1, 1, -1)), (0, np.cos, -1, (-1, -1, 1)), (1, np.sin, -1, (1, -1, 1)))
+
+
+@_by_slices
+def magic(points, depth, distortion):
+    """Colours."""
+    p = 5 * np.mod(points, 2 * np.pi)
+    at = [np.sin(p @ (1, 1, 1)), np.cos(p @ (-1, 1, -1)), -np.cos(p @ (-1, -1, 1))]
+    if depth > 0:
+        at = [distortion * one for one in at]
+    for axis, function, sign, signs in _MAGIC[:depth]:
+        at[axis] = distortion * sign * function(sum(s * one for s, one in zip(signs, at)))
+    return 0.5 - np.stack(at, -1) / (2 * distortion or 1)
 
 
 def _brick_chance(number):

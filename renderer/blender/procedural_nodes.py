@@ -79,6 +79,9 @@ def evaluate(graph, node, output, path, sheet):
         if not is_color:
             return is_first * 1.0, False
         return np.where(is_first[..., None], color("Color1"), color("Color2")), True
+    if kind == "TEX_MAGIC":
+        made = procedural.magic(points, node.turbulence_depth, number("Distortion"))
+        return (made, True) if is_color else (made.mean(axis=-1), False)
     if kind == "TEX_BRICK":
         return _brick(graph, node, number, points, color if is_color else None), is_color
     if kind == "TEX_NOISE":

@@ -18,8 +18,12 @@ _AIR_SCATTERING = 8 * math.pi ** 3 * (_AIR_INDEX ** 2 - 1) ** 2 / (3 * _AIR_MOLE
 _OZONE = 5.4e-4 * np.interp(_NM, np.arange(400.0, 761.0, 20.0), (  # 1/m where it is densest; cross sections, 1e-21 cm^2
     0.01, 0.03, 0.12, 0.35, 0.68, 1.2, 1.8, 2.9, 3.9, 4.6, 5.1, 4.0, 2.9, 2.1, 1.4, 0.88, 0.5, 0.3, 0.25)) * 1e-3
 _LIMB = 1 - 0.6 / 3  # the mean of a disc whose light falls off as 1 - 0.6 (1 - cos) towards its limb, as Cycles' does
-_VIEW_STEPS, _SUN_STEPS = 32, 16
+_VIEW_STEPS = 32
+# Towards the sun amounts fall off about exponentially: Gauss' and Laguerre's points, the last one just below the top.
+_TO_SUN, _SUN_WEIGHTS = np.polynomial.laguerre.laggauss(8)
+_TO_SUN, _SUN_WEIGHTS = _TO_SUN / 25, _SUN_WEIGHTS * np.exp(_TO_SUN) / 25
 _WIDTH, _HEIGHT = 512, 256
+_CYCLES_ROWS, _CYCLES_COLUMNS = 128, 512
 
 
 def _sun_spectrum():
@@ -39,13 +43,13 @@ def _length_to(radius_m, at, direction):
     return -along + np.sqrt(np.maximum(along ** 2 - (at ** 2).sum(axis=-1) + radius_m ** 2, 0))
 
 
-def _depths(at, direction, steps):
+def _depths(at, direction):
     """The amounts of air, dust and ozone from points to the top, in m of their full density."""
-    step = _length_to(_TOP_M, at, direction)[..., None] / steps
+    length = _length_to(_TOP_M, at, direction)[..., None]
     total = np.zeros((*at.shape[:-1], 3))
-    for k in range(steps):
-        point = at + direction * step * (k + 0.5)
-        total += _densities(np.maximum(np.linalg.norm(point, axis=-1) - _EARTH_M, 0)) * step
+    for part, weight in zip(_TO_SUN, _SUN_WEIGHTS):
+        height = np.linalg.norm(at + direction * length * part, axis=-1) - _EARTH_M
+        total += _densities(np.maximum(height, 0)) * length * weight
     return total
 
 
@@ -55,13 +59,21 @@ def _is_lit(at, direction):
     return (along > 0) | ((at ** 2).sum(axis=-1) - along ** 2 > _EARTH_M ** 2)
 
 
+def _shown(elevation, azimuth):
+    """Of which direction Cycles shows the sky at one; azimuths are from the sun's. Its picture of the sky has rows that
+    become closer towards the horizon, by the square, and is looked up half a row too low, half a column too far from the
+    sun."""
+    row = np.sqrt(elevation / (math.pi / 2)) - 0.5 / _CYCLES_ROWS
+    return math.pi / 2 * np.maximum(row, 0) ** 2, azimuth + math.pi / _CYCLES_COLUMNS
+
+
 class Sky:
     """Of a Sky Texture node."""
 
     def __init__(self, node):
         self._densities = np.array([node.air_density, node.dust_density, node.ozone_density])
         self._eye = np.array([0.0, 0.0, _EARTH_M + min(max(node.altitude, 1.0), 59e3)])
-        self.elevation, self.rotation = node.sun_elevation, node.sun_rotation
+        self.elevation, self.rotation, self._sun_size = node.sun_elevation, node.sun_rotation, node.sun_size
         self._sun = np.array([math.cos(self.elevation), 0.0, math.sin(self.elevation)])
 
     def _transmittance(self, depths, wave):
@@ -84,7 +96,7 @@ class Sky:
             point = eye + directions * step * (k + 0.5)
             here = _densities(np.maximum(np.linalg.norm(point, axis=-1) - _EARTH_M, 0))
             passed = passed + here * step
-            depths = passed + _depths(point, self._sun, _SUN_STEPS)
+            depths = passed + _depths(point, self._sun)
             lit = _is_lit(point, self._sun) * step[..., 0]
             air, dust = (phases[n] * here[..., n] * self._densities[n] * lit for n in (0, 1))
             for wave in range(len(_NM)):
@@ -98,8 +110,8 @@ class Sky:
         rows = _HEIGHT // 2
         elevations = np.append(0, (np.arange(rows) + 0.5) / rows * (math.pi / 2))  # the horizon, and the rows above it
         azimuths = (np.arange(_WIDTH // 2) + 0.5) / (_WIDTH // 2) * math.pi  # from the sun's, to one side
-        directions = np.stack([np.cos(elevations)[:, None] * np.cos(azimuths), np.cos(elevations)[:, None] * np.sin(azimuths),
-                               np.repeat(np.sin(elevations)[:, None], len(azimuths), 1)], -1)
+        up, around = _shown(elevations[:, None], azimuths)
+        directions = np.stack(np.broadcast_arrays(np.cos(up) * np.cos(around), np.cos(up) * np.sin(around), np.sin(up)), -1)
         side = rgb_of_spectrum(_NM, self._radiance(directions))
         around = np.concatenate([side, side[:, ::-1]], 1)
         # Column k is at the azimuth (k + 0.5) / width turns from the sun's; pictures have x in the middle, y to the left.
@@ -120,7 +132,15 @@ class Sky:
                          math.sin(self.elevation)])
 
     def sun_irradiance(self):
-        """RGB, W/m^2 on what faces the sun, of its node's intensity 1. As in Cycles, ozone dims the sky alone."""
-        depths = _depths(self._eye[None], self._sun, 64) * (1, 1, 0)
-        spectrum = np.stack([self._transmittance(depths, wave) for wave in range(len(_NM))], -1)[0] * _sun_spectrum()
-        return _LIMB * np.maximum(rgb_of_spectrum(_NM, spectrum), 0) if _is_lit(self._eye, self._sun) else np.zeros(3)
+        """RGB, W/m^2 on what faces the sun, of its node's intensity 1: the mean of the disc's lower and upper edge. As in
+        Cycles, ozone dims the sky alone."""
+        light = np.zeros(3)
+        if not _is_lit(self._eye, self._sun):
+            return light
+        for edge in (-0.5, 0.5):
+            elevation = max(self.elevation + edge * self._sun_size, 0.0)
+            towards = np.array([math.cos(elevation), 0.0, math.sin(elevation)])
+            depths = _depths(self._eye[None], towards) * (1, 1, 0)
+            spectrum = np.stack([self._transmittance(depths, wave) for wave in range(len(_NM))], -1)[0] * _sun_spectrum()
+            light += 0.5 * np.maximum(rgb_of_spectrum(_NM, spectrum), 0)
+        return _LIMB * light
