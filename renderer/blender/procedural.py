@@ -71,20 +71,45 @@ def _slope_flat(word, x, y):
     return np.where(h & np.uint32(1), -u, u) + np.where(h & np.uint32(2), -v, v)
 
 
+# The gradients of all hashes, (2 or 3 axes, hashes): slopes along each axis.
+_SLOPES = {3: np.array([_slope(np.arange(16, dtype=np.uint32), *axis) for axis in np.eye(3)]),
+           2: np.array([_slope_flat(np.arange(8, dtype=np.uint32), *axis) for axis in np.eye(2)])}
+
+
+def _around(cells, steps, made):
+    """For each step what is made of the cells (dimensions, n) that are that far away: of every cell around once, where those
+    are few beside the points, since each has many of them."""
+    low, high = cells.min(axis=1) + steps.min(axis=0), cells.max(axis=1) + steps.max(axis=0)
+    sizes = high - low + 1
+    if not sizes.prod() <= 0.25 * len(steps) * cells.shape[1]:  # also where they are no numbers
+        yield from (made(cells + step[:, None]) for step in steps)
+        return
+    ways = np.cumprod(np.append(1, sizes[:-1]))
+    all_of_them = low[:, None] + (np.arange(sizes.prod()) // ways[:, None]) % sizes[:, None]
+    table, at = made(all_of_them), (ways @ (cells - low[:, None])).astype(np.int64)
+    for step in steps:
+        yield [column[at + int(ways @ step)] for column in table]
+
+
+def _slopes(cells):
+    return _SLOPES[len(cells)][:, hash_words(cells.astype(np.int64).astype(np.uint32)) & np.uint32(15 if len(cells) == 3 else 7)]
+
+
 def signed_noise(points):
     """Perlin's, about in [-1, 1], of two or three dimensions: the length of the last axis."""
     dimensions = points.shape[-1]
-    cell = np.floor(points)
-    part = points - cell
-    words = cell.astype(np.int64).astype(np.uint32)
+    columns = np.ascontiguousarray(points.reshape(-1, dimensions).T)
+    cells = np.floor(columns)
+    part = columns - cells
     fade = part ** 3 * (part * (part * 6 - 15) + 10)
-    total = np.zeros(points.shape[:-1])
-    for corner in itertools.product((0, 1), repeat=dimensions):
-        word = hash_words([words[..., k] + np.uint32(corner[k]) for k in range(dimensions)])
-        weight = np.prod([fade[..., k] if corner[k] else 1 - fade[..., k] for k in range(dimensions)], axis=0)
-        away = [part[..., k] - corner[k] for k in range(dimensions)]
-        total += weight * (_slope if dimensions == 3 else _slope_flat)(word, *away)
-    return total * (0.9820 if dimensions == 3 else 0.6616)
+    total = np.zeros(columns.shape[1])
+    corners = np.array(list(itertools.product((0.0, 1.0), repeat=dimensions)))
+    for corner, slopes in zip(corners, _around(cells, corners, _slopes)):
+        made = sum(slope * (one - far) for slope, one, far in zip(slopes, part, corner))
+        for one, far in zip(fade, corner):
+            made *= one if far else 1 - one
+        total += made
+    return (total * (0.9820 if dimensions == 3 else 0.6616)).reshape(points.shape[:-1])
 
 
 def fractal(points, detail, roughness):
@@ -217,45 +242,55 @@ def brick(points, size, smooth, bias, width, height, offset, offset_rows, squash
     return np.where(near >= size, 0.0, inside * inside * (3 - 2 * inside)), tint
 
 
-_DISTANCES = {"MANHATTAN": lambda d: np.abs(d).sum(axis=-1), "CHEBYCHEV": lambda d: np.abs(d).max(axis=-1)}
+def _length(columns):
+    return np.sqrt(sum(one * one for one in columns))
 
 
-def _jitter(cell):
+_DISTANCES = {"MANHATTAN": lambda columns: sum(np.abs(one) for one in columns),
+              "CHEBYCHEV": lambda columns: functools.reduce(np.maximum, (np.abs(one) for one in columns))}
+
+
+def _jitter(cells):
     """Where a cell's point is in it, of two or three dimensions."""
-    axes = [cell[..., k] for k in range(cell.shape[-1])]
-    return np.stack([_hash_numbers(axes + ([float(k)] if k else [])) for k in range(cell.shape[-1])], -1)
+    return [_hash_numbers(list(cells) + ([float(k)] if k else [])) for k in range(len(cells))]
 
 
 @_by_slices
 def voronoi(points, feature, metric, randomness):
     """Distance, and the cell whose colour counts; feature: F1, F2 or DISTANCE_TO_EDGE."""
     dimensions = points.shape[-1]
-    measure = _DISTANCES.get(metric, lambda d: np.linalg.norm(d, axis=-1))
-    cell = np.floor(points)
-    part = points - cell
-    first, second = np.full(points.shape[:-1], 8.0), np.full(points.shape[:-1], 8.0)
-    of_first, of_second, nearest = cell.copy(), cell.copy(), np.zeros(points.shape)
-    steps = [np.array(step, np.float64) for step in itertools.product((-1, 0, 1), repeat=dimensions)]
-    away = [step + randomness * _jitter(cell + step) - part for step in steps]
-    for step, one in zip(steps, away):
-        far = np.linalg.norm(one, axis=-1) if feature == "DISTANCE_TO_EDGE" else measure(one)
-        is_first, is_second = far < first, (far < second) & (far >= first)
-        of_second = np.where(is_first[..., None], of_first, np.where(is_second[..., None], cell + step, of_second))
-        second = np.where(is_first, first, np.where(is_second, far, second))
-        of_first = np.where(is_first[..., None], cell + step, of_first)
-        nearest = np.where(is_first[..., None], one, nearest)
+    columns = np.ascontiguousarray(points.T)
+    cells = np.floor(columns)
+    part = columns - cells
+    steps = np.array(list(itertools.product((-1.0, 0.0, 1.0), repeat=dimensions)))
+    is_edge = feature == "DISTANCE_TO_EDGE"
+    measure = _length if is_edge else _DISTANCES.get(metric, _length)
+    first, second = np.full(len(points), 8.0), np.full(len(points), 8.0)
+    of_first, of_second = (np.full(len(points), len(steps) // 2) for _ in range(2))  # steps
+    all_away = []
+    for k, (step, jitter) in enumerate(zip(steps, _around(cells, steps, _jitter))):
+        away = [far + randomness * one - at for far, one, at in zip(step, jitter, part)]
+        far = measure(away)
+        is_first = far < first
+        if feature == "F2":
+            is_second = ~is_first & (far < second)
+            of_second = np.where(is_first, of_first, np.where(is_second, k, of_second))
+            second = np.where(is_first, first, np.where(is_second, far, second))
+        of_first[is_first] = k
         first = np.where(is_first, far, first)
-    if feature == "F1":
-        return first, of_first
-    if feature == "F2":
-        return second, of_second
-    edge = np.full(points.shape[:-1], 8.0)
-    for one in away:
-        between = one - nearest
-        length = np.linalg.norm(between, axis=-1)
-        distance = ((one + nearest) / 2 * between).sum(axis=-1) / np.maximum(length, 1e-12)
+        if is_edge:
+            all_away.append(away)
+    if not is_edge:
+        far, of = (second, of_second) if feature == "F2" else (first, of_first)
+        return far, (cells + steps.T[:, of]).T
+    nearest = np.take_along_axis(np.array(all_away), of_first[None, None], 0)[0]
+    edge = np.full(len(points), 8.0)
+    for away in all_away:
+        between = [one - other for one, other in zip(away, nearest)]
+        length = _length(between)
+        distance = sum((one + other) / 2 * part for one, other, part in zip(away, nearest, between)) / np.maximum(length, 1e-12)
         edge = np.where(length > 1e-2, np.minimum(edge, distance), edge)
-    return edge, of_first
+    return edge, (cells + steps.T[:, of_first]).T
 
 
 @_by_slices
