@@ -20,6 +20,8 @@ static const int64_t LOCKS_AT = (int64_t)1 << 60;
 /* An estimate takes a millisecond at most; who holds a claim so long has been stopped. */
 static const double STANDSTILL_SECONDS = 3.0;
 enum { ROUNDS_AWAKE = 64, SLEEP_NANOSECONDS = 200000 };
+/* Of naps in which this process was not stopped, for a claim of its own: some four seconds. */
+enum { OWN_ROUNDS_AWAKE = 20000, OWN_NAPS = 15000 };
 
 static struct flock lock_of(uint32_t index)
 {
@@ -83,13 +85,34 @@ bool claim_owners_is_alive(const claim_owners *owners, uint32_t claimer)
     return fcntl(owners->file, F_OFD_GETLK, &lock) != 0 || lock.l_type != F_UNLCK;
 }
 
-bool claim_owners_wait(const claim_owners *owners, claim_wait *wait, uint32_t word)
+static void take_nap(void)
+{
+    const struct timespec nap = {0, SLEEP_NANOSECONDS};
+    nanosleep(&nap, NULL);
+}
+
+/* Another thread of ours goes on as we do. Where the claim stands for seconds nonetheless, no thread has it: the file
+ * was overwritten by a copy that was made while the claim was held. With a new number of ours it is a dead one's. */
+static void wait_for_own(claim_owners *owners, claim_wait *wait, uint32_t word)
+{
+    if (wait->word != word)
+        *wait = (claim_wait){.word = word};
+    wait->rounds++;
+    if (wait->rounds < OWN_ROUNDS_AWAKE)
+        sched_yield();
+    else if (wait->rounds < OWN_ROUNDS_AWAKE + OWN_NAPS)
+        take_nap();
+    else
+        claim_owners_renew(owners, word & IRRADIANCE_VALUE_MASK);
+}
+
+bool claim_owners_wait(claim_owners *owners, claim_wait *wait, uint32_t word)
 {
     if (irradiance_word_state(word) != IRRADIANCE_CLAIMED)
         return true;
     uint32_t claimer = word & IRRADIANCE_VALUE_MASK;
-    if (claimer == load_relaxed_u32(&owners->claimer)) { /* another thread of ours, which goes on as we do */
-        sched_yield();
+    if (claimer == load_relaxed_u32(&owners->claimer)) {
+        wait_for_own(owners, wait, word);
         return false;
     }
     atomic_u32 *stalled = &owners->stalled[claimer & (CLAIM_OWNERS_MAX - 1)];
@@ -107,7 +130,6 @@ bool claim_owners_wait(const claim_owners *owners, claim_wait *wait, uint32_t wo
         store_relaxed_u32(stalled, claimer);
         return true;
     }
-    const struct timespec nap = {0, SLEEP_NANOSECONDS};
-    nanosleep(&nap, NULL);
+    take_nap();
     return false;
 }

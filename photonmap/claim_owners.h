@@ -7,8 +7,10 @@
  *
  * A claim carries the entry's index and a generation. A process that takes the entry of a dead one begins a new
  * generation, so that no living process writes the number that a dead one's claim carries, and a claim that was taken
- * over cannot be mistaken. All threads of a process share its number, and none of them takes over a claim of its own
- * process, whose holder is another working thread; so at most one of the threads that wait for a claim computes it. */
+ * over cannot be mistaken. All threads of a process share its number, and none of them takes over a claim of that
+ * number, whose holder is another working thread; so at most one of the threads that wait for a claim computes it.
+ * Where no thread holds it, since the file was overwritten by a copy of itself, the process takes a new number after
+ * seconds. */
 #ifndef AFTERGLOW_CLAIM_OWNERS_H
 #define AFTERGLOW_CLAIM_OWNERS_H
 
@@ -36,8 +38,8 @@ bool claim_owners_join(int file, claim_owner *table, claim_owners *out_owners);
 void claim_owners_reset(claim_owners *owners); /* frees what is owned; all zero is fine */
 
 /* To be called when a claim of this process, which carried this number, has been taken over, since the process had
- * stalled. Its further claims carry a new number and are waited for again. Any thread may call it; the first call takes
- * effect. */
+ * stalled, or when nobody holds it. Its further claims carry a new number and are waited for again. Any thread may call
+ * it; the first call takes effect. */
 void claim_owners_renew(claim_owners *owners, uint32_t claimer);
 
 /* Returns whether the process that a claim names is alive. */
@@ -54,6 +56,6 @@ typedef struct claim_wait {
  * Returns true when the claim may be taken over: its claimer is dead, has stalled for seconds (a stopped process, whose
  * publishing will then fail), or the word is no valid claim. The seconds are waited for once for each claimer, not for
  * each of its claims. */
-bool claim_owners_wait(const claim_owners *owners, claim_wait *wait, uint32_t word);
+bool claim_owners_wait(claim_owners *owners, claim_wait *wait, uint32_t word);
 
 #endif

@@ -119,10 +119,37 @@ static void what_need_not_be_waited_for(void **state)
     close(file);
 }
 
+/* A claim of ours that no thread holds, as a copy of the file brings it that was made while one did: it may be taken
+ * over once we have another number, which others are told. */
+static void a_claim_of_ours_that_nobody_holds(void **state)
+{
+    (void)state;
+    claim_owner table[CLAIM_OWNERS_MAX] = {0};
+    claim_owners a, b;
+    int file_a = open_file(), file_b = open_file();
+    assert_true(claim_owners_join(file_a, table, &a));
+    assert_true(claim_owners_join(file_b, table, &b));
+    const uint32_t before = claimer_of(&a), word = irradiance_word(IRRADIANCE_CLAIMED, before);
+    claim_wait wait = {0};
+    int rounds = 0;
+    while (!claim_owners_wait(&a, &wait, word))
+        assert_true(++rounds < 100000);
+    assert_true(rounds > 1000); /* a thread of ours has its time */
+    assert_true(claimer_of(&a) != before);
+    assert_false(claim_owners_is_alive(&a, before));
+    assert_false(claim_owners_is_alive(&b, before));
+    assert_true(claim_owners_is_alive(&b, claimer_of(&a)));
+    claim_owners_reset(&a);
+    claim_owners_reset(&b);
+    close(file_a);
+    close(file_b);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {TEST_IN_FOLDER(claims_live_as_long_as_their_owner),
                                        TEST_IN_FOLDER(a_new_number_once), TEST_IN_FOLDER(no_more_than_the_table_holds),
-                                       TEST_IN_FOLDER(what_need_not_be_waited_for)};
+                                       TEST_IN_FOLDER(what_need_not_be_waited_for),
+                                       TEST_IN_FOLDER(a_claim_of_ours_that_nobody_holds)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
