@@ -31,6 +31,18 @@ enum { LOOK_UP_EVERY_MS = 20 }; /* while a reader is waited for */
 
 static atomic_u32 no_more_waits; /* stands alone, so relaxed */
 
+static _Thread_local const run_context *waits_within; /* NULL: waits end by no_more_waits alone */
+
+void atomic_file_wait_within(const run_context *run) { waits_within = run; }
+
+/* 0: a reader may be waited for; else the errno that says why not. */
+static int end_of_waits(void)
+{
+    if (load_relaxed_u32(&no_more_waits))
+        return EINTR;
+    return waits_within && run_is_cancelled(waits_within) ? ECANCELED : 0;
+}
+
 void atomic_file_end_waits(void) { store_relaxed_u32(&no_more_waits, 1); }
 
 /* A temporary file that a signal handler could remove. Whoever claims a slot fills it, then shows it. A handler takes
@@ -57,7 +69,7 @@ static ag_status failure(const char *path, const char *what, int error, char *me
 {
     char text[128];
     snprintf(message, message_size, "cannot write '%s': %s%s", path, what, strerror_r(error, text, sizeof text));
-    return AG_ERROR_OUTPUT;
+    return error == ECANCELED && waits_within ? AG_CANCELLED : AG_ERROR_OUTPUT;
 }
 
 static int close_quietly(int fd)
@@ -76,8 +88,9 @@ static int open_special(const char *path)
         if (fd >= 0 || errno != ENXIO) /* ENXIO: a FIFO that nobody reads, or a device that is not there */
             return fd;
         struct stat status;
-        if (load_relaxed_u32(&no_more_waits) || stat(path, &status) != 0 || !S_ISFIFO(status.st_mode)) {
-            errno = ENXIO;
+        const int end = end_of_waits();
+        if (end != 0 || stat(path, &status) != 0 || !S_ISFIFO(status.st_mode)) {
+            errno = end == ECANCELED ? end : ENXIO;
             return -1;
         }
         const struct timespec nap = {0, LOOK_UP_EVERY_MS * 1000000L};
@@ -95,8 +108,8 @@ static int wait_until_writable(int fd)
             return 0; /* where there is an error, write says which */
         if (ready < 0 && errno != EINTR)
             return errno;
-        if (load_relaxed_u32(&no_more_waits))
-            return EINTR;
+        if (end_of_waits() != 0)
+            return end_of_waits();
     }
 }
 

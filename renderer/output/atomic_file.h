@@ -4,6 +4,7 @@
 #define AFTERGLOW_ATOMIC_FILE_H
 
 #include "afterglow/base.h"
+#include "run_context.h"
 
 #include <stddef.h>
 
@@ -15,8 +16,9 @@ extern "C" {
  * Temporary files of the same NAME that a killed process has left, so that none living owns them, are removed first. An
  * existing file keeps its permissions; a new one gets 0666 less the umask. A symbolic link stays, what it points to is
  * replaced. Where path is no regular file (a FIFO, a device) or names an open descriptor (/dev/stdout, /dev/fd/N), the
- * bytes are written to it directly; a FIFO's reader is waited for, until atomic_file_end_waits. On failure nothing is
- * left behind. Errors: AG_ERROR_OUTPUT, with path and reason in message (always terminated). */
+ * bytes are written to it directly; a FIFO's reader is waited for, until atomic_file_end_waits or until the run of
+ * atomic_file_wait_within is cancelled. On failure nothing is left behind. Errors: AG_ERROR_OUTPUT, with path and
+ * reason in message (always terminated), AG_CANCELLED (that run is). */
 ag_status atomic_file_write(const char *path, const void *bytes, size_t size, char *message, size_t message_size);
 
 /* A part of a file's bytes; atomic_file_write_pieces writes pieces one behind the other. */
@@ -39,6 +41,10 @@ ag_status atomic_file_check(const char *path, char *message, size_t message_size
 /* Ends all waits from now on for the reader of a FIFO or of standard output: where one is not ready, the writing fails.
  * For the handler of a signal: async-signal-safe. */
 void atomic_file_end_waits(void);
+
+/* From now on this thread waits for a reader only until run is cancelled; NULL: for as long as it takes. run is
+ * borrowed until the next call. */
+void atomic_file_wait_within(const run_context *run);
 
 /* Removes the temporary files that are being written at this moment (of the first 8 writers). Async-signal-safe: for
  * the handler of a signal that ends the process. A write that goes on after it fails. */

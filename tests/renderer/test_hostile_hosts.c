@@ -3,8 +3,13 @@
  * context of other settings.
  * Threads: one. */
 #define _GNU_SOURCE
+#include "atomics.h"
 #include "fixtures/scene_desk.h"
 
+#include <errno.h>
+#include <fcntl.h>
+#include <pthread.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 /* A scene that is complete, one that is open, and what was made of the first. */
@@ -14,6 +19,7 @@ typedef struct host {
     ag_rendering *rendering;
     ag_render_settings settings;
     ag_film *film;
+    atomic_u32 is_waiting; /* its only thread that writes, so relaxed */
 } host;
 
 static void begin_host(host *h)
@@ -328,6 +334,58 @@ static void a_context_may_go_before_what_was_made_with_it(void **state)
     assert_string_equal(h.d.said, "");
 }
 
+/* Cancels the context a moment later; and where that ends nothing, all waits, so that the test ends. */
+static void *cancel_later(void *user)
+{
+    host *h = user;
+    usleep(100000);
+    ag_context_cancel(h->d.context);
+    for (int i = 0; i < 200 && load_relaxed_u32(&h->is_waiting); i++)
+        usleep(50000);
+    if (load_relaxed_u32(&h->is_waiting))
+        ag_end_waits();
+    return NULL;
+}
+
+/* A FIFO without a reader, and one whose reader reads nothing. */
+static void cancelling_ends_the_wait_for_a_reader(void **state)
+{
+    (void)state;
+    host h;
+    pthread_t thread;
+    static const char *const NAMES[] = {"pipe.exr", "pipe.json", "pipe.ply"};
+    begin_host(&h);
+    for (int i = 0; i < 6; i++) {
+        const char *name = NAMES[i / 2];
+        int reader = -1;
+        if (i % 2 == 0) {
+            assert_int_equal(mkfifo(in_folder(name), 0600), 0);
+        } else { /* full, since a pipe could hold the whole file */
+            static const char FILLING[4096];
+            reader = open(in_folder(name), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+            const int writer = open(in_folder(name), O_WRONLY | O_NONBLOCK | O_CLOEXEC);
+            while (write(writer, FILLING, sizeof FILLING) > 0)
+                ;
+            assert_int_equal(errno, EAGAIN);
+            close(writer);
+        }
+        store_relaxed_u32(&h.is_waiting, 1);
+        assert_int_equal(pthread_create(&thread, NULL, cancel_later, &h), 0);
+        const ag_status status = i / 2 == 0   ? ag_film_write(h.d.context, h.film, NULL, in_folder(name))
+                                 : i / 2 == 1 ? ag_statistics_write(h.d.context, in_folder(name))
+                                              : ag_rendering_write_photons(h.rendering, in_folder(name));
+        store_relaxed_u32(&h.is_waiting, 0);
+        assert_int_equal(pthread_join(thread, NULL), 0);
+        if (reader >= 0)
+            close(reader);
+        if (status != AG_CANCELLED)
+            fail_msg("%s, %d: %s", name, i, ag_status_text(status));
+        ag_context_clear_cancel(h.d.context);
+    }
+    assert_string_equal(h.d.said, "");
+    end_host(&h);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -338,6 +396,7 @@ int main(void)
         TEST_IN_FOLDER(values_that_no_enum_has_are_refused),
         cmocka_unit_test(a_scene_needs_a_context_like_its_own),
         cmocka_unit_test(a_context_may_go_before_what_was_made_with_it),
+        TEST_IN_FOLDER(cancelling_ends_the_wait_for_a_reader),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

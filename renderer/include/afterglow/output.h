@@ -43,7 +43,8 @@ AG_API ag_status ag_output_check(ag_context *context, const ag_output_settings *
 
 /* Writes the film: scene-linear, with its layers and chromaticities, for .exr; scene-linear for .hdr (which clips
  * negative values) and .pfm, neither of which records its colour space; through look, display and view for .png, .tif,
- * .jpg. The file appears complete or not at all. settings NULL: the defaults. */
+ * .jpg. The file appears complete or not at all; the reader of a FIFO is waited for, until ag_context_cancel or
+ * ag_end_waits. settings NULL: the defaults. */
 AG_API ag_status ag_film_write(ag_context *context, const ag_film *film, const ag_output_settings *settings,
                                const char *path);
 

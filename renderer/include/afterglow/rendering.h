@@ -101,7 +101,7 @@ AG_API ag_status ag_rendering_read_checkpoint(ag_rendering *rendering, const cha
 /* Writes the photons as binary PLY, atomically, for viewers and scripts. Properties: x, y, z; the normal nx, ny, nz;
  * the direction of travel dx, dy, dz; red, green, blue in W; caustic (0 global map, 1 caustic map); demanded (1 where
  * irradiance was computed). Errors: AG_ERROR_ARGUMENT (the integrator has no photons), AG_ERROR_MEMORY,
- * AG_ERROR_OUTPUT. */
+ * AG_ERROR_OUTPUT, AG_CANCELLED (while the reader of a FIFO was waited for). */
 AG_API ag_status ag_rendering_write_photons(const ag_rendering *rendering, const char *path);
 /* Returns the film, which the rendering owns until ag_rendering_finish hands it over; it is the same object all along.
  * While ag_rendering_continue is under way, only its size, its channel names, ag_film_read_tile and
