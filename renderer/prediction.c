@@ -12,6 +12,7 @@
 #include "split_pilot.h"
 #include "status.h"
 
+#include <malloc.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -27,6 +28,9 @@ enum {
 static const double BYTES_PER_PHOTON = 26.0;
 /* Measured: stacks, arenas and what libraries hold for each thread. */
 static const double BYTES_PER_THREAD = 1.5e6;
+/* Measured: what aiming leaves behind of each trial of a round (photon_aim.c), by the global map and by the caustic
+ * map: memory that is free again, between what is kept. Where loading has left such memory, that is used first. */
+static const double AIM_BYTES_PER_TRIAL = 140.0, CAUSTIC_AIM_BYTES_PER_TRIAL = 50.0;
 /* Measured: of path tracing, which keeps no samples back. */
 static const double PATH_BYTES_PER_THREAD = 3e5;
 /* A zipped value of a picture, over its size; it differs much, and counts little. */
@@ -85,6 +89,17 @@ void ag_context_expect_host_memory(ag_context *context, uint64_t bytes)
         context->host_bytes = bytes;
 }
 
+static double aim_bytes_of(const scene *s, const ag_render_settings *settings)
+{
+    if (!(settings->photon_aim > 0.0f) || settings->max_depth < 2)
+        return 0.0;
+    const double global = fmin(fmax((double)settings->photon_count / 8.0, 4096.0), 65536.0);
+    const double caustic = fmin(fmax((double)settings->caustic_photon_count / 8.0, 4096.0), 65536.0);
+    const double bytes =
+        AIM_BYTES_PER_TRIAL * global + (maps_have_caustics(s, settings) ? CAUSTIC_AIM_BYTES_PER_TRIAL * caustic : 0.0);
+    return fmax(bytes - (double)mallinfo2().fordblks, 0.0);
+}
+
 static ag_status predict_memory(ag_context *context, const scene *s, const ag_render_settings *settings,
                                 ag_prediction *out, int *out_channel_count)
 {
@@ -102,7 +117,7 @@ static ag_status predict_memory(ag_context *context, const scene *s, const ag_re
         thread = BYTES_PER_THREAD + sizeof(sample_queue) + sizeof(gather_batch);
     }
     out->memory_scene_bytes = resident_bytes();
-    out->memory_photon_bytes = (uint64_t)(BYTES_PER_PHOTON * photons);
+    out->memory_photon_bytes = (uint64_t)(BYTES_PER_PHOTON * photons + (has_map ? aim_bytes_of(s, settings) : 0.0));
     out->memory_thread_bytes = (uint64_t)(thread * threads);
     out->memory_film_bytes = (uint64_t)(film * pixels * (settings->photon_map_file ? 2.0 : 1.0)); /* and its copy */
     out->memory_host_bytes = context->host_bytes;
@@ -228,6 +243,49 @@ static ag_status render_trials(ag_rendering *r, trial out_trials[2])
     return status == AG_OK ? render_trial(r, false, &out_trials[1]) : status;
 }
 
+/* CPU seconds of the phases that make the maps. */
+typedef struct map_cost {
+    double cpu_s[AG_PHASE_COUNT];
+} map_cost;
+
+static map_cost cost_since(const ag_statistics *now, const ag_statistics *before)
+{
+    map_cost cost = {{0}};
+    for (int i = AG_PHASE_PHOTONS; i <= AG_PHASE_MAP; i++)
+        cost.cpu_s[i] = now->phase_cpu_s[i] - before->phase_cpu_s[i];
+    return cost;
+}
+
+/* Maps of fewer photons than those tried, on the line from the wanted counts through the tried ones: *out_step of the
+ * way from the tried to the wanted, back. What each photon costs follows, and what is paid once, as for finding out
+ * where photons go. */
+static ag_status measure_fewer(ag_context *context, const ag_scene *loaded, const ag_render_settings *wanted,
+                               const ag_render_settings *tried, map_cost *out_cost, double *out_step)
+{
+    static const double PART = 0.45; /* fewer than those tried; photon_aim.c tries as many paths for as many */
+    const double more[] = {(double)wanted->photon_count - (double)tried->photon_count,
+                           (double)wanted->caustic_photon_count - (double)tried->caustic_photon_count};
+    const double steps[] = {more[0] > 0.0 ? PART * (double)tried->photon_count / more[0] : HUGE_VAL,
+                            more[1] > 0.0 ? PART * (double)tried->caustic_photon_count / more[1] : HUGE_VAL};
+    ag_render_settings fewer = *tried;
+    ag_rendering *r;
+    *out_step = fmin(steps[0], steps[1]);
+    fewer.photon_count -= (uint64_t)(*out_step * more[0]);
+    fewer.caustic_photon_count -= (uint64_t)(*out_step * more[1]);
+    const ag_statistics before = context->statistics;
+    AG_TRY(ag_rendering_create(context, loaded, &fewer, &r));
+    *out_cost = cost_since(&context->statistics, &before);
+    ag_rendering_finish(r, NULL);
+    return AG_OK;
+}
+
+/* The cost of the wanted photons, from that of the tried ones and of fewer: no less than of the tried ones, and no more
+ * than if all were paid by the photon. */
+static double cost_of_wanted(double tried_s, double fewer_s, double step, double photons_grown)
+{
+    return fmin(tried_s + fmax(tried_s - fewer_s, 0.0) / step, tried_s * photons_grown);
+}
+
 static double at_most(uint64_t count, uint64_t most) { return count > most ? (double)count / (double)most : 1.0; }
 
 static ag_status predict_time(ag_context *context, const ag_scene *loaded, const ag_render_settings *settings,
@@ -242,6 +300,14 @@ static ag_status predict_time(ag_context *context, const ag_scene *loaded, const
     tried.photon_map_file = NULL;
     tried.photon_paths = 0; /* what the last frame left is for the picture itself */
     tried.cache = settings->cache == AG_CACHE_PRECOMPUTE ? AG_CACHE_ON_DEMAND : settings->cache;
+    map_cost fewer = {{0}};
+    double step = HUGE_VAL;
+    ag_render_settings counted = *settings;
+    counted.caustic_photon_count = caustic_count;
+    const double cpu_at_first = clock_process_cpu_seconds();
+    if (global_grown > 1.0 || caustic_grown > 1.0)
+        AG_TRY(measure_fewer(context, loaded, &counted, &tried, &fewer, &step));
+    const double cpu_of_fewer = clock_process_cpu_seconds() - cpu_at_first;
     const ag_statistics before = context->statistics;
     ag_rendering *r;
     trial pilot = {0}, trials[2] = {0};
@@ -263,12 +329,16 @@ static ag_status predict_time(ag_context *context, const ag_scene *loaded, const
             out->time_s[i] = before.time_s[i];
         const double render_cpu_s =
             preparing + predict_samples(r, settings, &pilot, trials, global_grown, &precompute_cpu_s);
-        double cpu_before = clock_process_cpu_seconds() - pilot.cpu_s - trials[0].cpu_s - trials[1].cpu_s - preparing;
+        double cpu_before =
+            clock_process_cpu_seconds() - cpu_of_fewer - pilot.cpu_s - trials[0].cpu_s - trials[1].cpu_s - preparing;
+        const map_cost tried_cost = cost_since(s, &before);
         for (int i = AG_PHASE_PHOTONS; i <= AG_PHASE_MAP; i++) {
-            const double phase_cpu_s = s->phase_cpu_s[i] - before.phase_cpu_s[i];
+            const double phase_cpu_s = tried_cost.cpu_s[i];
+            const double wanted_s = cost_of_wanted(phase_cpu_s, fewer.cpu_s[i], step, photons_grown);
             /* some of it is one thread's; what takes longer than that has waited for a processor */
-            out->time_s[i] = fmin(s->time_s[i] - before.time_s[i], phase_cpu_s) * photons_grown;
-            cpu_before += phase_cpu_s * (photons_grown - 1.0);
+            out->time_s[i] = fmin(s->time_s[i] - before.time_s[i], phase_cpu_s);
+            out->time_s[i] *= phase_cpu_s > 0.0 ? wanted_s / phase_cpu_s : 1.0;
+            cpu_before += wanted_s - phase_cpu_s;
         }
         out->time_s[AG_PHASE_PRECOMPUTE] = precompute_cpu_s / threads;
         out->time_s[AG_PHASE_RENDER] = render_cpu_s / threads;

@@ -99,6 +99,32 @@ static void test_memory(void **state)
     EXPECT_PEAK("--photons=3000", "--spp=8", "--noise=0", "--size=64x64", "--nthreads=8", "-o", "a.exr", GLASS);
 }
 
+/* The difference that an option makes to the peak, in a run or in what is said beforehand. */
+static double peak_more(bool is_dry, const char *option, const char *other)
+{
+    double peaks[2];
+    for (int i = 0; i < 2; i++) {
+        program_run run = RUN(is_dry ? "--dry-run" : "-q", "--photons=600000", "--size=32x32", "--spp=1", "--noise=0",
+                              i == 0 ? option : other, "--stats=a.json", "-o", "a.exr", BOX);
+        expect_exit(&run, 0);
+        program_run_reset(&run);
+        json_t *stats = stats_read(in_folder("a.json"));
+        peaks[i] = number_of(stats, is_dry ? "prediction.memory.peak_bytes" : "memory.peak_bytes");
+        json_decref(stats);
+    }
+    return peaks[0] - peaks[1];
+}
+
+/* Aiming leaves memory between what is kept, which counts in small scenes. */
+static void test_memory_of_aiming(void **state)
+{
+    (void)state;
+    const double predicted = peak_more(true, "--photon-aim=0.8", "--photon-aim=0"),
+                 real = peak_more(false, "--photon-aim=0.8", "--photon-aim=0");
+    if (predicted < 0.4 * real || predicted > real + 12e6)
+        fail_msg("predicted %.1f MB more, but it took %.1f more", predicted / 1e6, real / 1e6);
+}
+
 static void test_limit(void **state)
 {
     (void)state;
@@ -130,10 +156,8 @@ static void test_limit(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        TEST_IN_FOLDER(test_dry_run),
-        TEST_IN_FOLDER(test_samples),
-        TEST_IN_FOLDER(test_memory),
-        TEST_IN_FOLDER(test_limit),
+        TEST_IN_FOLDER(test_dry_run),          TEST_IN_FOLDER(test_samples), TEST_IN_FOLDER(test_memory),
+        TEST_IN_FOLDER(test_memory_of_aiming), TEST_IN_FOLDER(test_limit),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
