@@ -5,6 +5,7 @@
 #include "call_matrix.h"
 #include "image/image_reader.h"
 #include "scene_parameters.h"
+#include "shape/borrowed_arrays.h"
 #include "status.h"
 
 #include <stdio.h>
@@ -137,8 +138,10 @@ ag_status scene_call_make_mesh(scene_call *c, pbrt_builder *builder)
     if (status == AG_OK)
         status = pbrt_builder_mesh(builder, &call, &at, c->texts[0], arrays, c->is_light,
                                    c->borrowed.positions ? &c->borrowed : NULL, c->mesh);
-    if (status == AG_OK)
+    if (status == AG_OK) {
+        borrowed_arrays_note(c->mesh);
         c->arrays_hash = shape_hash_borrowed(c->mesh);
+    }
     scene_parameters_free(&arrays);
     scene_parameters_free(&c->items);
     c->items = rest;

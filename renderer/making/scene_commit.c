@@ -48,6 +48,7 @@ static ag_status run_plan(scene_making *making, scene *before, scene **out_scene
     const color_config *colors;
     ag_context *context = making->context;
     AG_TRY(scene_making_check_arrays(making));
+    AG_TRY(scene_making_check_kept(making));
     scene *s = *out_scene = scene_create();
     AG_TRY(s ? context_color_config(context, &colors) : AG_ERROR_MEMORY);
     s->space = context->working_space;

@@ -44,6 +44,16 @@ ag_status scene_making_check_arrays(const scene_making *making)
     return stale ? AG_ERROR_ARGUMENT : AG_OK;
 }
 
+ag_status scene_making_check_kept(const scene_making *making)
+{
+    const scene_call *lost = scene_plan_find_lost(&making->plan);
+    if (lost)
+        log_at(
+            making->context->log, AG_LOG_ERROR, lost->where,
+            "arrays that it borrows were freed or written to: the shape has to be changed or removed before the commit");
+    return lost ? AG_ERROR_ARGUMENT : AG_OK;
+}
+
 /* Whether the scene can be changed, and is committed; says in the log why not. */
 static bool can_be_edited(const ag_scene *made, const char *function)
 {

@@ -6,6 +6,7 @@
 #include "floating_point.h"
 #include "scene_load.h"
 #include "scene_making.h"
+#include "shape/borrowed_arrays.h"
 #include "status.h"
 
 #include <stdlib.h>
@@ -50,7 +51,16 @@ ag_status scene_check_complete(ag_context *context, const ag_scene *made)
                                                                   : NULL;
     if (wrong)
         log_message(context->log, AG_LOG_ERROR, "the scene %s", wrong);
-    return wrong ? AG_ERROR_ARGUMENT : made->making ? scene_making_check_arrays(made->making) : AG_OK;
+    AG_TRY(wrong ? AG_ERROR_ARGUMENT : made->making ? scene_making_check_arrays(made->making) : AG_OK);
+    for (uint32_t i = 0; i < made->s->shape_count; i++)
+        if (borrowed_arrays_are_lost(&made->s->shapes[i])) {
+            log_message(
+                context->log, AG_LOG_ERROR,
+                "shape %u of the scene, a mesh of %u triangles: arrays that it borrows were freed or written to", i + 1,
+                made->s->shapes[i].as.mesh.triangle_count);
+            return AG_ERROR_ARGUMENT;
+        }
+    return AG_OK;
 }
 
 /* --- beginning --- */

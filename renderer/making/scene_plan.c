@@ -1,6 +1,7 @@
 /* scene_plan.c: see scene_plan.h. */
 #include "scene_plan.h"
 
+#include "shape/borrowed_arrays.h"
 #include "status.h"
 
 #include <stdlib.h>
@@ -113,6 +114,14 @@ bool scene_plan_mark_stale(const scene_plan *plan)
         c->is_stale = c->is_stale || (c->mesh && shape_hash_borrowed(c->mesh) != c->arrays_hash);
     }
     return scene_plan_find_stale(plan) != NULL;
+}
+
+const scene_call *scene_plan_find_lost(const scene_plan *plan)
+{
+    for (size_t i = 0; i < plan->placed.count; i++)
+        if (plan->placed.calls[i]->mesh && borrowed_arrays_are_lost(plan->placed.calls[i]->mesh))
+            return plan->placed.calls[i];
+    return NULL;
 }
 
 const scene_call *scene_plan_find_stale(const scene_plan *plan)

@@ -37,6 +37,8 @@ void scene_plan_remove(call_list *list, size_t place);
 bool scene_plan_mark_stale(const scene_plan *plan);
 /* The first that is marked so; NULL: there is none. */
 const scene_call *scene_plan_find_stale(const scene_plan *plan);
+/* The first shape of which borrowed arrays were freed (borrowed_arrays.h); NULL: there is none. */
+const scene_call *scene_plan_find_lost(const scene_plan *plan);
 
 /* Runs them all: pictures, media, textures (each behind those that it names), materials, hints and camera, then the
  * shapes of objects, then all else, in the order of their first calls. Each tells its warnings once. Errors: those of

@@ -37,6 +37,7 @@ typedef struct mesh {
     float *area_cdf;        /* of emissive meshes, else NULL: [triangle_count], running sum of areas over the total */
     uint32_t *holder_count; /* of shapes that share all arrays but area_cdf; NULL: they are this one's alone */
     unsigned borrowed;      /* of MESH_BORROWS_... */
+    uint64_t borrowed_ends; /* see borrowed_arrays.h */
 } mesh;
 
 /* Sphere and cylinder around the z axis, of which z_min to z_max is there; disk: z = height, inner to outer radius. All
@@ -114,7 +115,7 @@ bool shape_has_same_surface(const shape *a, const shape *b);
  * own. Errors: AG_ERROR_MEMORY. */
 bool shape_equals(const shape *s, const shape *other);
 ag_status shape_share_arrays(shape *from, shape *in_out_shape);
-/* Returns a hash of the arrays that a mesh borrows, to detect writes; 0: it borrows none. */
+/* Returns a hash of the arrays that a mesh borrows, to detect writes; 0: it borrows none, or they cannot be read. */
 uint64_t shape_hash_borrowed(const shape *s);
 /* Copies a shape that is no curves, before its commit, moved on by a map: its world space becomes another's. Errors:
  * AG_ERROR_MEMORY. */

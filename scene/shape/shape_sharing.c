@@ -3,6 +3,7 @@
 #include "shape/shape.h"
 
 #include "math/rng.h"
+#include "shape/borrowed_arrays.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -114,7 +115,7 @@ uint64_t shape_hash_borrowed(const shape *s)
 {
     const mesh *m = &s->as.mesh;
     uint64_t hash = 0;
-    if (s->kind != SHAPE_MESH || m->borrowed == 0)
+    if (s->kind != SHAPE_MESH || m->borrowed == 0 || !borrowed_arrays_are_mapped(s))
         return 0;
     if (m->borrowed & MESH_BORROWS_POSITIONS)
         hash = hash_words(hash, m->positions, 3 * (size_t)m->vertex_count);

@@ -244,6 +244,51 @@ static void arrays_written_before_a_commit_that_fails(void **state)
     drop_sheet(&s);
 }
 
+/* Arrays that the host has freed are named by renderings and commits, and read by neither: unmapped ones, and such as
+ * allocators write into. */
+static void freed_arrays_are_told(void **state)
+{
+    (void)state;
+    ag_film *film = NULL;
+    const ag_render_settings settings = ag_default_render_settings();
+    for (int variant = 0; variant < 4; variant++) {
+        const bool is_editable = variant % 2 == 1, is_unmapped = variant / 2 == 1;
+        desk d;
+        sheet s;
+        words w;
+        ag_handle handle;
+        float pixels[COUNT];
+        make_sheet(&s);
+        if (is_editable)
+            begin_lit_editable(&d);
+        else
+            begin_lit(&d);
+        describe(&s, true, true, &w);
+        assert_int_equal(ag_scene_add_shape(d.made, &w.shape, &handle), AG_OK);
+        assert_int_equal(ag_scene_commit(d.made), AG_OK);
+        render(d.context, d.made, pixels);
+        if (is_unmapped)
+            drop_sheet(&s);
+        else
+            memset(s.indices, 0x7f, 2 * sizeof(void *)); /* as the links of a list of free memory */
+        assert_int_equal(ag_render(d.context, d.made, &settings, &film), AG_ERROR_ARGUMENT);
+        expect_said(&d, "a mesh of 79202 triangles: arrays that it borrows were freed or written to");
+        if (is_editable) {
+            assert_int_equal(ag_scene_assign_material(d.made, handle, NULL), AG_OK);
+            assert_int_equal(ag_scene_commit(d.made), AG_ERROR_ARGUMENT);
+            expect_said(
+                &d, "error: arrays that it borrows were freed or written to: the shape has to be changed or removed");
+            assert_int_equal(ag_render(d.context, d.made, &settings, &film), AG_ERROR_ARGUMENT);
+            assert_int_equal(ag_scene_remove(d.made, handle), AG_OK);
+            assert_int_equal(ag_scene_commit(d.made), AG_OK);
+            render(d.context, d.made, pixels);
+        }
+        end(&d);
+        if (!is_unmapped)
+            drop_sheet(&s);
+    }
+}
+
 static void refused(desk *d, const words *w, const char *what)
 {
     assert_int_equal(ag_scene_add_shape(d->made, &w->shape, NULL), AG_ERROR_ARGUMENT);
@@ -327,6 +372,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(borrowed_arrays_take_no_memory, make_folder, remove_folder),
         cmocka_unit_test_setup_teardown(changed_arrays_are_seen, make_folder, remove_folder),
         cmocka_unit_test_setup_teardown(arrays_written_before_a_commit_that_fails, make_folder, remove_folder),
+        cmocka_unit_test_setup_teardown(freed_arrays_are_told, make_folder, remove_folder),
         cmocka_unit_test_setup_teardown(uv_of_another_count_is_told, make_folder, remove_folder),
         cmocka_unit_test_setup_teardown(what_cannot_be_borrowed_is_told, make_folder, remove_folder),
     };
