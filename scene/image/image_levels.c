@@ -4,6 +4,7 @@
 
 #include "atomics.h"
 #include "image/image_module_loader.h"
+#include "image/png_chunks.h"
 #include "status.h"
 
 #include <pthread.h>
@@ -52,7 +53,7 @@ ag_status image_levels_open(const char *path, image_levels **out_levels)
     *out_levels = NULL;
     struct stat file;
     const image_module *module = image_module_get(message, sizeof message);
-    if (!module || stat(path, &file) != 0 || !S_ISREG(file.st_mode))
+    if (!module || stat(path, &file) != 0 || !S_ISREG(file.st_mode) || png_file_chunks_wrong(path))
         return AG_OK;
     image_levels_header header;
     void *open;

@@ -5,6 +5,7 @@
 
 #include "image/image_module_loader.h"
 #include "image/jpeg_end.h"
+#include "image/png_chunks.h"
 
 #include <errno.h>
 #include <stdbool.h>
@@ -29,6 +30,11 @@ static ag_status read_picture(const char *path, image_wish wish, image *out_imag
     if (!is_there || !S_ISREG(file.st_mode)) { /* a pipe that nobody writes to would be waited for */
         snprintf(message, message_size, "cannot read '%s': %s", path,
                  is_there ? "it is not a regular file" : strerror(errno));
+        return AG_ERROR_INPUT;
+    }
+    const char *wrong = png_file_chunks_wrong(path);
+    if (wrong) {
+        snprintf(message, message_size, "cannot read '%s': %s", path, wrong);
         return AG_ERROR_INPUT;
     }
     const image_module *module = image_module_get(message, message_size);
@@ -74,6 +80,11 @@ ag_status image_read_memory(const char *name, const unsigned char *bytes, size_t
     const char *extension = extension_of(bytes, size);
     if (!extension) {
         snprintf(message, message_size, "cannot read '%s': it is neither a PNG nor a JPEG picture", name);
+        return AG_ERROR_INPUT;
+    }
+    const char *wrong = png_chunks_wrong(bytes, size);
+    if (wrong) {
+        snprintf(message, message_size, "cannot read '%s': %s", name, wrong);
         return AG_ERROR_INPUT;
     }
     const image_module *module = image_module_get(message, message_size);

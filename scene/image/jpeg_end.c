@@ -1,6 +1,8 @@
 /* jpeg_end.c: see jpeg_end.h. */
 #include "image/jpeg_end.h"
 
+#include "text/input_file.h"
+
 #include <stdio.h>
 #include <string.h>
 
@@ -70,7 +72,7 @@ bool jpeg_file_is_cut_short(const char *path)
 {
     unsigned char block[16384];
     walk w = {.at = SEGMENT_BEGIN};
-    FILE *file = fopen(path, "rb");
+    FILE *file = input_file_stream(path);
     if (!file)
         return false;
     size_t size = fread(block, 1, 2, file);

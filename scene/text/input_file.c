@@ -188,6 +188,16 @@ int input_file_open(const run_context *run, const char *path, char *error, size_
     return -1;
 }
 
+FILE *input_file_stream(const char *path)
+{
+    char error[128];
+    const int descriptor = input_file_open(NULL, path, error, sizeof error);
+    FILE *file = descriptor >= 0 ? fdopen(descriptor, "rb") : NULL;
+    if (descriptor >= 0 && !file)
+        close(descriptor);
+    return file;
+}
+
 bool input_file_allow(const run_context *run, const char *path, char *error, size_t error_size)
 {
     int descriptor = input_file_open(run, path, error, error_size);

@@ -8,6 +8,7 @@
 
 #include <stddef.h>
 #include <stdint.h>
+#include <stdio.h>
 
 /* Which files a scene was read from. A run that reads one points to it. */
 typedef struct input_files {
@@ -35,6 +36,10 @@ bool input_files_has(const input_files *files, uint64_t device, uint64_t inode);
  * or lies where a confined scene may not read, whether there is such a file or not, -1 is returned and error, of
  * error_size bytes, says why, without the path. */
 int input_file_open(const run_context *run, const char *path, char *error, size_t error_size);
+
+/* The same as a stream, of a file that has been asked for before; NULL: it cannot be opened, or is no regular file any
+ * more. */
+FILE *input_file_stream(const char *path);
 
 /* A number that differs where a file may have changed; 0 where that cannot be told. */
 uint64_t input_file_version(const char *path);

@@ -5,6 +5,7 @@
 #include "clock.h"
 #include "scene.h"
 #include "status.h"
+#include "text/input_file.h"
 
 #include <float.h>
 #include <math.h>
@@ -32,7 +33,7 @@ hash128 texture_file_content(const char *path)
 {
     enum { AT_ONCE = 1 << 20 };
     hash128 h = hash128_begin();
-    FILE *file = fopen(path, "rb");
+    FILE *file = input_file_stream(path);
     char *bytes = file ? malloc(AT_ONCE) : NULL;
     size_t count = 1;
     while (bytes && (count = fread(bytes, 1, AT_ONCE, file)) > 0)

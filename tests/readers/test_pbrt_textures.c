@@ -297,6 +297,34 @@ static void cut_jpeg_files_are_told(void **state)
     }
 }
 
+/* A PNG file of some hundred bytes with a chunk that promises 2 GiB is an error before memory is taken for it. */
+static void png_chunks_fit_into_the_file(void **state)
+{
+    (void)state;
+    static const unsigned char CHUNK[] = "\x7f\xff\xff\xf0tEXtname";
+    static const char *const NAMES[] = {"Y"};
+    const float pixel = 0.5f;
+    const image_description d = {.width = 1,
+                                 .height = 1,
+                                 .full_width = 1,
+                                 .full_height = 1,
+                                 .channel_count = 1,
+                                 .channel_names = NAMES,
+                                 .type = IMAGE_UINT8};
+    write_parts("long.png", &d, &pixel);
+    rgb_of(PICTURE("long.png"), hit_at(0.5f, 0.5f, 0, 0, 0));
+    FILE *file = fopen(in_folder("long.png"), "r+b");
+    assert_non_null(file);
+    assert_int_equal(fseek(file, 33, SEEK_SET), 0); /* behind the signature and the header */
+    assert_int_equal(fwrite(CHUNK, 1, sizeof CHUNK - 1, file), sizeof CHUNK - 1);
+    assert_int_equal(fclose(file), 0);
+    reading r = read_world(PICTURE("long.png"));
+    assert_int_equal(r.status, AG_ERROR_INPUT);
+    assert_non_null(
+        strstr(r.said[AG_LOG_ERROR], "long.png': the PNG file is cut short, or damaged: one of its chunks"));
+    reading_destroy(&r);
+}
+
 /* Doubtful textures that can be read all the same are warned of. */
 static void doubtful_textures_are_warned_of(void **state)
 {
@@ -348,11 +376,17 @@ static void exploding_graphs_are_refused(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        TEST_IN_FOLDER(wrong_textures_say_why),         TEST_IN_FOLDER(bad_values_are_told),
-        TEST_IN_FOLDER(windows_of_pictures_are_heeded), TEST_IN_FOLDER(far_windows_are_black_or_told),
-        TEST_IN_FOLDER(alpha_is_found_by_its_name),     TEST_IN_FOLDER(colors_are_found_by_their_names),
-        TEST_IN_FOLDER(cut_jpeg_files_are_told),        TEST_IN_FOLDER(doubtful_textures_are_warned_of),
-        TEST_IN_FOLDER(exploding_graphs_are_refused),   TEST_IN_FOLDER(levels_of_small_tiles_are_not_used),
+        TEST_IN_FOLDER(wrong_textures_say_why),
+        TEST_IN_FOLDER(bad_values_are_told),
+        TEST_IN_FOLDER(windows_of_pictures_are_heeded),
+        TEST_IN_FOLDER(far_windows_are_black_or_told),
+        TEST_IN_FOLDER(alpha_is_found_by_its_name),
+        TEST_IN_FOLDER(colors_are_found_by_their_names),
+        TEST_IN_FOLDER(png_chunks_fit_into_the_file),
+        TEST_IN_FOLDER(cut_jpeg_files_are_told),
+        TEST_IN_FOLDER(doubtful_textures_are_warned_of),
+        TEST_IN_FOLDER(exploding_graphs_are_refused),
+        TEST_IN_FOLDER(levels_of_small_tiles_are_not_used),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,0 +1,15 @@
+/* png_chunks.h: whether a PNG file's chunks fit into it. Its library takes the memory that a chunk's length promises,
+ * up to 2 GiB of a file of some hundred bytes, before it finds that the file ends. Rests on: the PNG specification
+ * (second edition), 2003, 5. Flow: image_reader, image_levels -> [here]. Threads: pure functions. */
+#ifndef AFTERGLOW_PNG_CHUNKS_H
+#define AFTERGLOW_PNG_CHUNKS_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+/* NULL: bytes are no PNG file, or one whose chunks fit; else what is wrong. */
+const char *png_chunks_wrong(const unsigned char *bytes, size_t size);
+/* The same of a file; NULL where it cannot be read. */
+const char *png_file_chunks_wrong(const char *path);
+
+#endif
