@@ -208,8 +208,13 @@ static ag_status tell_statistics(picture_run *r, ag_status status, const passes_
         ag_statistics statistics = ag_context_statistics(r->context);
         summary_print(stderr, &statistics);
     }
-    if (!o->stats || !(is_made || r->lacks_memory))
+    const bool is_stopped = status == AG_CANCELLED && signals_stop() && !is_made; /* before there was any picture */
+    if (!o->stats || !(is_made || r->lacks_memory || is_stopped))
         return status;
+    if (is_stopped) {
+        ag_context_note_end(r->context, AG_END_SIGNAL);
+        ag_context_clear_cancel(r->context); /* for this file */
+    }
     const ag_status written = ag_statistics_write(r->context, o->stats);
     return status == AG_OK ? written : status;
 }

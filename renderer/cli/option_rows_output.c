@@ -150,7 +150,7 @@ static const option_row ROWS[] = {
           .section = "Output",
           .help = "write statistics as JSON",
           .manual =
-              "Write statistics (counts, times, memory) as JSON, also of a picture that a signal has ended. "
+              "Write statistics (counts, times, memory) as JSON, also of a picture that a signal has ended, or not let begin. "
               "Its end.reason is _samples_ (all that *--spp* allows), _noise_ (that of *--noise* was reached "
               "before), _photons_ (*--photons-only*), _dry-run_, _memory_ (there was not enough), _time-limit_ or _signal_, where *--resume* goes on from "
               "a checkpoint; end.noise is the noise reached, as *--noise* measures it, null where it is not "

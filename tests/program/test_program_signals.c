@@ -1,6 +1,6 @@
 /* test_program_signals.c: a signal ends the program with 128 + its number, in whatever phase it comes. While it renders
- * it leaves what picture there is, whole as a file and marked as unfinished; in other phases it leaves no file. SIGUSR1
- * shows the picture so far, and ends nothing.
+ * it leaves what picture there is, whole as a file and marked as unfinished; in other phases it leaves statistics
+ * alone, which say how it ended. SIGUSR1 shows the picture so far, and ends nothing.
  *
  * Flow: tests of the whole program. Threads: the program's. */
 /* ctest: sanitize */
@@ -66,13 +66,25 @@ static void test_repeated_cpu_limit(void **state)
     expect_partial_pictures();
 }
 
+/* Statistics alone, which a farm can tell a signal by. */
+static void expect_reason_alone(void)
+{
+    expect_listing("a.json");
+    json_t *stats = stats_read(in_folder("a.json"));
+    assert_string_equal(json_string_value(stats_find(stats, "end.reason")), "signal");
+    json_decref(stats);
+    assert_int_equal(unlink(in_folder("a.json")), 0);
+}
+
 static void test_every_phase(void **state)
 {
     (void)state;
     expect_end("photons", SIGINT, ARGUMENTS(LONG, "--photons=2e7", "--spp=100000", BOX));
+    expect_reason_alone();
     expect_end("map", SIGINT, ARGUMENTS(LONG, "--photons=1e6", "--spp=100000", BOX));
+    expect_reason_alone();
     expect_end("precompute", SIGINT, ARGUMENTS(LONG, "--photons=1e6", "--nearest=3000", "--cache=precompute", BOX));
-    expect_listing("");
+    expect_reason_alone();
     /* seconds of rays within one sample */
     expect_end("render", SIGTERM,
                ARGUMENTS(LONG, "--photons=1e6", "--nearest=3000", "--gather-samples=50000", "--size=48x48", BOX));
@@ -137,7 +149,7 @@ static void test_loading(void **state)
     assert_int_equal(fclose(file), 0);
     expect_end("load", SIGINT, ARGUMENTS(LONG, "--spp=100000", path));
     expect_end("bvh", SIGTERM, ARGUMENTS(LONG, "--spp=100000", path));
-    expect_listing("mesh.pbrt");
+    expect_listing("a.json mesh.pbrt");
 }
 
 /* While files are written the program may as well end in order: then all of them are there. */
