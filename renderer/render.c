@@ -138,10 +138,8 @@ static ag_status check_map(ag_rendering *r, ag_status status)
     }
     if (r->kept)
         film_copy_restore(r->film, r->kept);
-    if (r->film && film_count_samples(r->film).most == 0) { /* what the pilot has said is dropped, too */
-        free(r->film->first_splits);
-        r->film->first_splits = NULL;
-    }
+    if (r->film && film_count_samples(r->film).most == 0)
+        split_prior_reset(&r->film->prior); /* the pilot has read the map, too */
     log_message(
         r->context->log, AG_LOG_ERROR,
         "'%s': the photon map was cut short or overwritten while it was in use%s: trace the map anew, and leave its "

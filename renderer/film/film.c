@@ -57,15 +57,6 @@ size_t film_block_number(const ag_film *film, int x, int y)
     return (size_t)(y / FILM_BLOCK - all->y0 / FILM_BLOCK) * (size_t)columns + (size_t)(x / FILM_BLOCK - column);
 }
 
-void film_begin_splits(ag_film *film, const ag_render_settings *settings)
-{
-    const film_area *all = &film->area;
-    for (int y = all->y0; film->splits && y < all->y0 + all->height; y++)
-        for (int x = all->x0; x < all->x0 + all->width; x++)
-            film->splits[film_pixel_at(film, x, y)].counts =
-                film->first_splits ? film->first_splits[film_block_number(film, x, y)] : splitting_first(settings);
-}
-
 ag_film *film_create(const ag_render_settings *settings, const working_space *space, const pixel_filter *filter,
                      bool splits_samples, aov_layout *layout)
 {
@@ -108,7 +99,7 @@ ag_film *film_create(const ag_render_settings *settings, const working_space *sp
     if (splitting_is_open(settings, splits_samples)) {
         film->splits = calloc(count, sizeof *film->splits);
         is_whole = is_whole && film->splits;
-        film_begin_splits(film, settings);
+        splitting_set_first(film, settings);
     }
     if (film->layout.needs_nearest) {
         film->nearest = calloc(count, sizeof *film->nearest);
@@ -129,7 +120,7 @@ void ag_film_destroy(ag_film *film)
     free(film->counts);
     free(film->wanted);
     free(film->splits);
-    free(film->first_splits);
+    split_prior_reset(&film->prior);
     free(film->negatives);
     free(film->nearest);
     for (int i = 0; i < FILM_VIEW_COUNT; i++)
@@ -146,7 +137,8 @@ void ag_film_destroy(ag_film *film)
     free(film);
 }
 
-int film_planes(ag_film *film, film_plane out_planes[FILM_PLANES_MAX])
+/* The planes that samples fill. */
+static int sample_planes(ag_film *film, film_plane out_planes[FILM_PLANES_MAX])
 {
     size_t pixels = film_area_count(film);
     int count = 0;
@@ -156,7 +148,6 @@ int film_planes(ag_film *film, film_plane out_planes[FILM_PLANES_MAX])
         out_planes[count++] = (film_plane){film->wanted, pixels * sizeof *film->wanted};
     if (film->splits)
         out_planes[count++] = (film_plane){film->splits, pixels * sizeof *film->splits};
-    out_planes[count++] = (film_plane){&film->cost_per_variance, sizeof film->cost_per_variance};
     if (film->negatives)
         out_planes[count++] = (film_plane){film->negatives, pixels * sizeof *film->negatives};
     for (int i = 0; i < FILM_VIEW_COUNT; i++)
@@ -171,14 +162,20 @@ int film_planes(ag_film *film, film_plane out_planes[FILM_PLANES_MAX])
     return count;
 }
 
+int film_planes(ag_film *film, film_plane out_planes[FILM_PLANES_MAX])
+{
+    int count = sample_planes(film, out_planes);
+    double *of_pilot = &film->prior.cost_per_variance;
+    out_planes[count++] = (film_plane){of_pilot, sizeof *of_pilot};
+    return count;
+}
+
 void film_clear(ag_film *film, const ag_render_settings *settings)
 {
     film_plane planes[FILM_PLANES_MAX];
-    const double of_frame = film->cost_per_variance; /* of the pilot, which no sample has a part in */
-    for (int i = film_planes(film, planes) - 1; i >= 0; i--)
+    for (int i = sample_planes(film, planes) - 1; i >= 0; i--)
         memset(planes[i].bytes, 0, planes[i].size);
-    film->cost_per_variance = of_frame;
-    film_begin_splits(film, settings);
+    splitting_set_first(film, settings);
 }
 
 film_area film_block_at(const ag_film *film, int column, int row)

@@ -58,8 +58,6 @@ struct ag_film {
     uint32_t *counts;              /* samples so far */
     uint32_t *wanted;              /* samples that it is to have, see adaptive.h; NULL: as many as all */
     split_trial *splits;           /* see splitting.h; NULL: all samples are split alike */
-    double cost_per_variance;      /* see splitting.h: of the whole frame; 0: blocks choose each for itself */
-    split_counts *first_splits;    /* of the first samples, by film_block_number; NULL: splitting_first */
     uint32_t *negatives;           /* samples with sign -1; NULL where the filter has no signs */
     float *views[FILM_VIEW_COUNT]; /* a plane each; NULL where not asked for */
     cryptomatte mattes[CRYPTOMATTE_KIND_COUNT];
@@ -67,6 +65,8 @@ struct ag_film {
     film_nearest *nearest;                           /* NULL where not asked for */
     float *pixels;                                   /* 3, RGB, of the crop: set by film_resolve and film_show */
     film_tiles *tiles;                               /* which of them have changed */
+
+    split_prior prior; /* of the splits; without splits nothing is in it */
 
     noise_lattice noise; /* of some of them */
 };
@@ -91,7 +91,7 @@ static inline size_t film_pixel_at(const struct ag_film *film, int x, int y)
  * lattice wants them. */
 void film_add(struct ag_film *film, size_t pixel, const eye_sample *sample);
 
-/* Empty again. */
+/* Removes all samples; keeps what the pilot has told. */
 void film_clear(struct ag_film *film, const ag_render_settings *settings);
 
 /* Makes all pixels of the sums, for all to see. */
@@ -111,9 +111,6 @@ int film_planes(struct ag_film *film, film_plane out_planes[FILM_PLANES_MAX]);
 
 /* The number, row by row, of the block that a pixel of the full picture lies in, among those that the area touches. */
 size_t film_block_number(const struct ag_film *film, int x, int y);
-
-/* Sets how the first samples of all pixels are split. */
-void film_begin_splits(struct ag_film *film, const ag_render_settings *settings);
 
 /* A block's pixels, those of the area alone, by its column and row there. */
 film_area film_block_at(const struct ag_film *film, int column, int row);

@@ -2,6 +2,7 @@
 #include "film/splitting.h"
 
 #include "film/film.h"
+#include "status.h"
 
 #include <stdlib.h>
 
@@ -27,8 +28,9 @@ enum { FIRST_RAYS_MIN = 4, FIRST_LIGHTS_MIN = 4 };
 /* A fixed number of camera samples needs no standard error (noise.h) of the frame below this, which nobody sees. */
 static const double FIXED_CLEAN = 0.003;
 
-/* The frame's numbers depend on its variance and cost, and these on the numbers: so many times each is computed from
- * the other. The pilot's pixels are taken by squares of GROUP by GROUP, as variances of four samples say little. */
+/* The frame's numbers depend on its variance and cost, and these on the numbers: each is computed from the other in so
+ * many rounds. The pilot's pixels are summed by squares of GROUP by GROUP, since the variance of four samples is hardly
+ * known. */
 enum { FRAME_ROUNDS = 16, GROUP = 4 };
 
 /* A block is told of by so many of the pilot's pixels on each side of its middle, at least: four samples of one alone
@@ -83,6 +85,21 @@ split_counts splitting_most(const ag_render_settings *settings, bool splits_samp
     return most;
 }
 
+void split_prior_reset(split_prior *prior)
+{
+    free(prior->first);
+    *prior = (split_prior){0};
+}
+
+void splitting_set_first(struct ag_film *film, const ag_render_settings *settings)
+{
+    const film_area *all = &film->area;
+    for (int y = all->y0; film->splits && y < all->y0 + all->height; y++)
+        for (int x = all->x0; x < all->x0 + all->width; x++)
+            film->splits[film_pixel_at(film, x, y)].counts =
+                film->prior.first ? film->prior.first[film_block_number(film, x, y)] : splitting_first(settings);
+}
+
 void split_trial_add(split_trial *trial, const eye_sample *sample)
 {
     rgb radiance = sample->radiance;
@@ -107,7 +124,7 @@ void split_trial_add(split_trial *trial, const eye_sample *sample)
 
 /* --- deciding --- */
 
-/* Over a block: how many pixels, their variances of what is shown of one sample, and costs of one. */
+/* The number of a block's pixels, and sums over them: of variances of one sample, as shown, and of its costs. */
 typedef struct block_sums {
     double pixels, all, by_parts, by_ray, by_light, caustic;
     double cost_of_ray, cost_of_light, cost_of_caustic, cost_of_rest;
@@ -149,8 +166,8 @@ static camera_part camera_part_of(const block_sums *sums, double caustics, doubl
 
 static double cost_per_variance_of(camera_part part) { return part.variance > 0.0 ? part.cost / part.variance : 0.0; }
 
-/* The number of samples of a part that is best for each camera sample, where samples cost so much for their variance.
- */
+/* Returns the number of samples of a part that is best for each camera sample. by_one, cost_of_one: the variance by one
+ * of them, and its cost. */
 static double wanted_count(double cost_per_variance, double by_one, double cost_of_one)
 {
     return cost_per_variance > 0.0 && cost_of_one > 0.0 ? sqrt(by_one / cost_of_one * cost_per_variance) : 1.0;
@@ -189,7 +206,7 @@ static split_counts counts_at(double cost_per_variance, uint32_t caustic_bits, c
                                                c->least.lights, c->most.lights)};
 }
 
-/* The best of a block that goes on until it is quiet enough, whatever others do. */
+/* Returns what is best for a block that goes on until it is quiet enough, whatever others do. */
 static split_counts best_of_block(const block_sums *sums, const choice *c)
 {
     uint32_t bits = wanted_caustic_bits(cost_per_variance_of(camera_part_of(sums, -1.0, sums->cost_of_rest)), sums, c);
@@ -200,7 +217,7 @@ static split_counts best_of_block(const block_sums *sums, const choice *c)
 
 static split_counts best_counts(const struct ag_film *film, const block_sums *sums, const choice *c)
 {
-    double of_frame = film->cost_per_variance;
+    double of_frame = film->prior.cost_per_variance;
     return of_frame > 0.0 ? counts_at(of_frame, wanted_caustic_bits(of_frame, sums, c), sums, c)
                           : best_of_block(sums, c);
 }
@@ -273,7 +290,27 @@ static split_counts counts_by_pilot(const struct ag_film *film, const struct ag_
     return counts;
 }
 
-/* Adds what a group's camera samples have, where the frame's cost so much for their variance. */
+static size_t group_count(const struct ag_film *pilot)
+{
+    const int columns = (pilot->full_width + GROUP - 1) / GROUP, rows = (pilot->full_height + GROUP - 1) / GROUP;
+    return (size_t)columns * (size_t)rows;
+}
+
+/* Sums the pilot's pixels, GROUP by GROUP. out_sums: group_count of them. */
+static void sum_groups(const struct ag_film *pilot, const choice *c, block_sums *out_sums)
+{
+    for (int y0 = 0; y0 < pilot->full_height; y0 += GROUP)
+        for (int x0 = 0; x0 < pilot->full_width; x0 += GROUP, out_sums++) {
+            *out_sums = (block_sums){0};
+            for (int y = y0; y < y0 + GROUP && y < pilot->full_height; y++)
+                for (int x = x0; x < x0 + GROUP && x < pilot->full_width; x++) {
+                    size_t pixel = film_pixel_at(pilot, x, y);
+                    add_pixel(&pilot->splits[pixel], (double)pilot->counts[pixel], c->scale, out_sums);
+                }
+        }
+}
+
+/* Adds variance and cost of a group's camera samples, with the numbers that are best at this cost per variance. */
 static void add_group(const block_sums *sums, double cost_per_variance, const choice *c, camera_part *whole)
 {
     double rays = wanted_count(cost_per_variance, sums->by_ray, sums->cost_of_ray);
@@ -288,29 +325,29 @@ static void add_group(const block_sums *sums, double cost_per_variance, const ch
         sums->cost_of_rest + sums->cost_of_ray * rays + sums->cost_of_light * lights + sums->cost_of_caustic * caustics;
 }
 
-/* Returns the cost of the frame's camera samples divided by their variance, when all blocks have the best numbers.
+/* Writes the cost of the frame's camera samples divided by their variance, when all blocks have the best numbers.
  * fixed: each camera sample's share of the cost that does not depend on their number. clean: the least variance of a
- * camera sample that counts. */
-static double cost_per_variance_of_frame(const struct ag_film *pilot, const choice *c, double fixed, double clean)
+ * camera sample that counts. Errors: AG_ERROR_MEMORY. */
+static ag_status find_cost_per_variance(const struct ag_film *pilot, const choice *c, double fixed, double clean,
+                                        double *out)
 {
-    double out = 0.0;
+    const size_t count = group_count(pilot);
+    block_sums *groups = malloc(count * sizeof *groups);
+    if (!groups)
+        return AG_ERROR_MEMORY;
+    sum_groups(pilot, c, groups);
+    *out = 0.0;
     for (int round = 0; round < FRAME_ROUNDS; round++) {
         camera_part whole = {0};
         double pixels = 0.0;
-        for (int y0 = 0; y0 < pilot->full_height; y0 += GROUP)
-            for (int x0 = 0; x0 < pilot->full_width; x0 += GROUP) {
-                block_sums sums = {0};
-                for (int y = y0; y < y0 + GROUP && y < pilot->full_height; y++)
-                    for (int x = x0; x < x0 + GROUP && x < pilot->full_width; x++) {
-                        size_t pixel = film_pixel_at(pilot, x, y);
-                        add_pixel(&pilot->splits[pixel], (double)pilot->counts[pixel], c->scale, &sums);
-                    }
-                add_group(&sums, out, c, &whole);
-                pixels += sums.pixels;
-            }
-        out = (whole.cost + fixed * pixels) / fmax(whole.variance, clean * pixels);
+        for (size_t i = 0; i < count; i++) {
+            add_group(&groups[i], *out, c, &whole);
+            pixels += groups[i].pixels;
+        }
+        *out = (whole.cost + fixed * pixels) / fmax(whole.variance, clean * pixels);
     }
-    return out;
+    free(groups);
+    return AG_OK;
 }
 
 ag_status splitting_begin(struct ag_film *film, const struct ag_film *pilot, double fixed_cost,
@@ -320,18 +357,19 @@ ag_status splitting_begin(struct ag_film *film, const struct ag_film *pilot, dou
     const int right = all->x0 + all->width, bottom = all->y0 + all->height;
     const double samples = (double)settings->samples_per_pixel;
     choice c = make_choice(settings);
-    film->cost_per_variance = cost_per_variance_of_frame(
-        pilot, &c, fixed_cost / (samples * (double)settings->width * (double)settings->height),
-        FIXED_CLEAN * FIXED_CLEAN * samples);
+    const double fixed = fixed_cost / (samples * (double)settings->width * (double)settings->height);
+    const double clean = FIXED_CLEAN * FIXED_CLEAN * samples;
+    split_prior *prior = &film->prior;
+    AG_TRY(find_cost_per_variance(pilot, &c, fixed, clean, &prior->cost_per_variance));
     c.least = (split_counts){.rays = FIRST_RAYS_MIN, .lights = FIRST_LIGHTS_MIN};
-    if (!film->first_splits)
-        film->first_splits = malloc((film_block_number(film, right - 1, bottom - 1) + 1) * sizeof *film->first_splits);
-    if (!film->first_splits)
+    if (!prior->first)
+        prior->first = malloc((film_block_number(film, right - 1, bottom - 1) + 1) * sizeof *prior->first);
+    if (!prior->first)
         return AG_ERROR_MEMORY;
     for (int y = all->y0 / FILM_BLOCK * FILM_BLOCK; y < bottom; y += FILM_BLOCK)
         for (int x = all->x0 / FILM_BLOCK * FILM_BLOCK; x < right; x += FILM_BLOCK)
-            film->first_splits[film_block_number(film, x, y)] = counts_by_pilot(film, pilot, x, y, &c, settings);
-    film_begin_splits(film, settings);
+            prior->first[film_block_number(film, x, y)] = counts_by_pilot(film, pilot, x, y, &c, settings);
+    splitting_set_first(film, settings);
     return AG_OK;
 }
 

@@ -6,22 +6,22 @@
  * samples, G by one gather ray, L by one light sample, and what each of them costs, v, g, l, N camera samples of n rays
  * and m light samples have the variance (V + G / n + L / m) / N for the cost N (v + n g + m l); their product is least
  * at n = sqrt(G / V * v / g), m = sqrt(L / V * v / l). Where caustics of the mean square C, which cost c, are asked for
- * by chance, with the probability p (roulette), V - C + C / p and v + p c stand for V and v: p = sqrt(C / (V - C) * v /
- * c).
+ * by chance, with the probability p (roulette), V - C + C / p and v + p c stand for V and v, and the best probability
+ * is p = sqrt(C / (V - C) * v / c).
  *
- * These numbers are best for a block that goes on until it is quiet enough. Where N is fixed, all blocks have the same
- * N, and what counts is the product of the whole frame's variance E and cost C, the latter with what photon maps cost
- * in all, shared out among the camera samples: it is least at n = sqrt(G / g * C / E), m = sqrt(L / l * C / E), p =
- * sqrt(C' / c
- * * C / E) (C' the caustics' mean square). A small picture of the whole frame tells C / E. Its samples have their
- * pixel's middle for place: what differs across a pixel is spread so evenly among samples that little of it is left in
- * the mean (Mitchell, "Consequences of Stratified Sampling in Graphics", 1996). Flow: film -> [here] -> the next pass.
- * Threads: a pixel belongs to one worker at a time; decided when no tile is rendered.
+ * These numbers are best for a block that goes on until it is quiet enough. Where N is fixed, it is the same for all
+ * blocks, and what counts is the product of the whole frame's variance E and cost F. This cost includes what the photon
+ * maps cost, shared out among the camera samples. The product is least where F / E stands for v / V above, and for
+ * v / (V - C): at n = sqrt(G / g * F / E), m = sqrt(L / l * F / E), p = sqrt(C / c * F / E). A small picture of the
+ * whole frame tells F / E. Each of its samples lies in the middle of its pixel: in the large picture, what differs
+ * across a pixel is spread so evenly among its samples that little of it is left in their mean (Mitchell, "Consequences
+ * of Stratified Sampling in Graphics", 1996).
  *
- * It is decided for blocks, as in adaptive.h: for the first samples of a fixed number by a small picture of the whole
- * frame, later, when there are so many samples, from the block's own; costs are numbers of rays and no times. How a
- * sample is split depends on samples before it alone, so its expectation does not, and all samples weigh alike: the
- * picture's expectation stays. */
+ * The numbers are chosen for blocks, as in adaptive.h. With a fixed number of samples, the small picture chooses those
+ * of the first ones; later ones are chosen by the block's own samples. Costs are numbers of rays, never times. How a
+ * sample is split depends on earlier samples alone, and all samples weigh alike: the picture's expectation stays.
+ * Flow: film -> [here] -> the next pass. Threads: a pixel belongs to one worker at a time; decisions are made while no
+ * tile is rendered. */
 #ifndef AFTERGLOW_SPLITTING_H
 #define AFTERGLOW_SPLITTING_H
 
@@ -43,6 +43,16 @@ typedef struct split_trial {
     split_counts counts;
 } split_trial;
 
+/* What a small picture of the whole frame tells before the first sample. Samples have no part in it, so a film that is
+ * emptied keeps it. */
+typedef struct split_prior {
+    double cost_per_variance; /* of the frame's camera samples; 0: each block chooses for itself */
+    split_counts *first;      /* of the first samples, by film_block_number; owned; NULL: splitting_first of all */
+} split_prior;
+
+/* Frees what it owns, and empties it: before the first sample, or at the end of the film. */
+void split_prior_reset(split_prior *prior);
+
 /* Returns whether blocks choose: where the integrator's samples can be split (splits_samples) and no number of gather
  * rays is set. */
 bool splitting_is_open(const ag_render_settings *settings, bool splits_samples);
@@ -59,11 +69,14 @@ split_counts splitting_most(const ag_render_settings *settings, bool splits_samp
 
 void split_trial_add(split_trial *trial, const eye_sample *sample);
 
-/* Decides the blocks' counts before their first samples, and what the frame's samples cost for their variance, by those
- * of a small picture of the whole frame, all of whose pixels have had so many samples. fixed_cost: of all that does not
- * depend on the number of samples, as eye_worker_cost counts. Errors: AG_ERROR_MEMORY. */
+/* Sets the film's prior and the counts of its blocks' first samples, by a small picture of the whole frame, each of
+ * whose pixels has had two samples or more. fixed_cost: of all that does not depend on the number of samples, as
+ * eye_worker_cost counts. Errors: AG_ERROR_MEMORY. */
 ag_status splitting_begin(struct ag_film *film, const struct ag_film *pilot, double fixed_cost,
                           const ag_render_settings *settings);
+
+/* Sets how the first samples of all pixels are split; does nothing where blocks do not choose. */
+void splitting_set_first(struct ag_film *film, const ag_render_settings *settings);
 
 /* Decides the blocks' counts where that is due, and returns the number of samples to stop at next. Called while no tile
  * is rendered, before pixels are brought to `wanted` samples; calling it again changes nothing. */

@@ -70,7 +70,7 @@ static void expect_counts(const ag_film *film, int x, uint32_t rays, uint32_t li
         fail_msg("%u gather rays, %u light samples where %u and %u are best", got.rays, got.lights, rays, lights);
 }
 
-/* A block that goes on until it is quiet. */
+/* Of a block that goes on until it is quiet enough. */
 static void test_best_numbers(void **state)
 {
     (void)state;
@@ -95,7 +95,7 @@ static void test_best_numbers(void **state)
     ag_film_destroy(film);
 }
 
-/* One number of samples for all blocks: what their halves have in common decides. */
+/* With a fixed number of samples, variance and cost of both halves together decide. */
 static void test_best_numbers_of_frames(void **state)
 {
     (void)state;
@@ -145,9 +145,10 @@ static void test_first_numbers(void **state)
     for (int times = 0; times < 2; times++) {
         split_counts lit = film->splits[film_pixel_at(film, 31, 3)].counts,
                      dark = film->splits[film_pixel_at(film, 64, 3)].counts;
-        /* C / E is 1290, in closed form by iteration: sqrt(0.64 / 4 * 1290) = 14.4 rays, sqrt(0.16 / 4 * 1290) = 7.2
-         * light samples, sqrt(0.004 / 40 * 1290) = 0.36 of the caustics; in the dark the least of both. */
-        assert_true(fabs(0.25 * film->cost_per_variance - 1290.0) < 10.0); /* of a variance of 1 a quarter is shown */
+        /* F / E (splitting.h) is 1290, in closed form by iteration: sqrt(0.64 / 4 * 1290) = 14.4 rays, sqrt(0.16 / 4 *
+         * 1290) = 7.2 light samples, sqrt(0.004 / 40 * 1290) = 0.36 of the caustics; in the dark the least of both. A
+         * quarter of a variance of 1 is shown. */
+        assert_true(fabs(0.25 * film->prior.cost_per_variance - 1290.0) < 10.0);
         assert_true(lit.rays == 16 && lit.lights == 8 && lit.caustic_bits == 1 && lit.ray_shift == 0);
         assert_true(dark.rays == 4 && dark.lights == 4);
         film_clear(film, &settings);
