@@ -1,60 +1,22 @@
-/* scene_file.c: see scene_file.h; and PLY files that are a scene by themselves. Threads: one per scene. */
+/* scene_file.c: see scene_file.h. Threads: one per scene. */
 #include "scene_file.h"
 
-#include "gltf/gltf_reader.h"
 #include "model/import_file.h"
-#include "model/importer.h"
-#include "model/obj_file.h"
-#include "model/ply_file.h"
 #include "pbrt/pbrt_parser.h"
 #include "scene_overrides.h"
+#include "scene_reader.h"
 #include "status.h"
 
-#include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 
-/* A mesh alone: grey, as it stands in the file. */
-static ag_status load_ply(run_context *run, const char *path, scene *out_scene)
-{
-    importer i;
-    ply_mesh m;
-    char error[768] = "";
-    import_surface surface = {.alpha = 1.0f, .alpha_texture = SCENE_NO_TEXTURE, .radiance_texture = SCENE_NO_TEXTURE};
-    material gray = material_make(MATERIAL_DIFFUSE);
-    transform identity = transform_identity();
-    AG_TRY(importer_init(&i, run, path, out_scene));
-    run_progress(run, AG_PHASE_LOAD, 0.0);
-    ag_status status = ply_file_read(path, run, error, sizeof error, &m);
-    if (status == AG_ERROR_INPUT)
-        log_message(run->log, AG_LOG_ERROR, "%s", error); /* begins with the file's name */
-    if (status == AG_OK) {
-        i.left_out_count = m.lines;
-        i.odd_vector_count = m.odd_vectors;
-        status = scene_add_material(out_scene, &gray, &surface.material_index);
-    }
-    if (status != AG_OK) {
-        ply_mesh_reset(&m);
-        return status;
-    }
-    AG_TRY(importer_add_mesh(&i, "vertex", &m.mesh, &identity, &surface)); /* takes the mesh */
-    if (out_scene->shape_count > 0)
-        AG_TRY(scene_set_name(out_scene, NAMED_SHAPE, 0, path));
-    log_at(run->log, AG_LOG_INFO, i.where, "a PLY file has no materials: the mesh is grey");
-    AG_TRY(importer_finish(&i));
-    run_progress(run, AG_PHASE_LOAD, 1.0);
-    return AG_OK;
-}
-
-typedef ag_status load_function(run_context *run, const char *path, scene *out_scene);
-
-/* Ahead of assimp, which reads some of them too. */
 static const struct {
     const char *ending;
-    load_function *load;
+    scene_reader *read;
 } READERS[] = {
-    {".pbrt", pbrt_parse_file}, {".pbrt.gz", pbrt_parse_file}, {".obj", obj_load_file},   {".obj.gz", obj_load_file},
-    {".ply", load_ply},         {".ply.gz", load_ply},         {".gltf", gltf_load_file}, {".glb", gltf_load_file},
+#define SCENE_READER_ROW(ending, reader) {ending, reader},
+    SCENE_READER_LIST(SCENE_READER_ROW)
+#undef SCENE_READER_ROW
 };
 
 static bool ends_with(const char *path, const char *ending)
@@ -64,7 +26,7 @@ static bool ends_with(const char *path, const char *ending)
 }
 
 /* Text whose name no reader knows may be of another renderer. */
-static ag_status load_unknown(run_context *run, const char *path, scene *out_scene)
+static ag_status read_unknown(run_context *run, const char *path, scene *out_scene)
 {
     const char *slash = strrchr(path, '/'), *dot = strrchr(slash ? slash : path, '.');
     ag_status status = pbrt_parse_file(run, path, out_scene);
@@ -74,13 +36,13 @@ static ag_status load_unknown(run_context *run, const char *path, scene *out_sce
     return status;
 }
 
-/* out_load: the reader of files of that name. */
-static ag_status find_reader(const run_context *run, const char *path, load_function **out_load)
+/* out_read: the reader of files of that name. */
+static ag_status find_reader(const run_context *run, const char *path, scene_reader **out_read)
 {
-    *out_load = load_unknown;
+    *out_read = read_unknown;
     for (size_t k = 0; k < sizeof READERS / sizeof *READERS; k++)
         if (ends_with(path, READERS[k].ending)) {
-            *out_load = READERS[k].load;
+            *out_read = READERS[k].read;
             return AG_OK;
         }
     const char *slash = strrchr(path, '/'), *dot = strrchr(slash ? slash : path, '.');
@@ -88,7 +50,7 @@ static ag_status find_reader(const run_context *run, const char *path, load_func
     if (dot && dot[1] != '\0')
         AG_TRY(import_reads_extension(run, dot, &is_models));
     if (is_models)
-        *out_load = import_file_load;
+        *out_read = import_file_load;
     return AG_OK;
 }
 
@@ -107,10 +69,10 @@ static ag_status finish(run_context *run, const char *path, bool is_pbrt, scene 
 
 ag_status scene_file_load(run_context *run, const char *path, scene *out_scene)
 {
-    load_function *load;
-    AG_TRY(find_reader(run, path, &load));
-    AG_TRY(load(run, path, out_scene));
-    return finish(run, path, load == pbrt_parse_file || load == load_unknown, out_scene);
+    scene_reader *read;
+    AG_TRY(find_reader(run, path, &read));
+    AG_TRY(read(run, path, out_scene));
+    return finish(run, path, read == pbrt_parse_file || read == read_unknown, out_scene);
 }
 
 ag_status scene_file_load_text(run_context *run, const char *name, const char *text, size_t size, scene *out_scene)

@@ -1,5 +1,5 @@
 /* scene_file.h: a scene from a file of any format that is read, by the end of the file's name.
- * Flow: path -> [here] -> pbrt_parser, ply_file, import_file -> scene. Threads: one per scene. */
+ * Flow: path -> [here] -> scene_reader, import_file -> scene. Threads: one per scene. */
 #ifndef AFTERGLOW_SCENE_FILE_H
 #define AFTERGLOW_SCENE_FILE_H
 

@@ -1,7 +1,7 @@
 /* fuzz_gltf.c: a glTF 2.0 file, JSON or binary: document, accessors, nodes, materials, lamps, cameras, pictures.
  * Flow: bytes -> a file -> [here] -> gltf_reader. Threads: one. */
 #include "fuzz_scene.h"
-#include "gltf/gltf_reader.h"
+#include "scene_reader.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {

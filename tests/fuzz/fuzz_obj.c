@@ -2,7 +2,7 @@
  * Flow: bytes -> two files -> [here] -> obj_file, mtl_file. Threads: one. */
 #define _GNU_SOURCE /* memmem */
 #include "fuzz_scene.h"
-#include "model/obj_file.h"
+#include "scene_reader.h"
 
 #include <string.h>
 

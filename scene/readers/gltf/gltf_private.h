@@ -5,7 +5,7 @@
 #ifndef AFTERGLOW_GLTF_PRIVATE_H
 #define AFTERGLOW_GLTF_PRIVATE_H
 
-#include "gltf/gltf_reader.h"
+#include "scene.h"
 #include "status.h"
 
 #include <jansson.h>

@@ -1,9 +1,15 @@
-/* gltf_reader.c: see gltf_reader.h. The whole way of a glTF file on one page.
+/* gltf_reader.c: the reader of glTF 2.0 files (scene_reader.h), JSON or binary, which are told apart by their first
+ * bytes; "-" is standard input. It takes the file's default scene. Messages give the path of the value they are about,
+ * as "room.gltf: error: accessors[3].bufferView: ...". Radiance is what the file's luminance is (1 nit is 1 W/m^2/sr),
+ * and lamps are measured alike (1 cd is 1 W/sr, 1 lx is 1 W/m^2); but Blender's exporter multiplies those of lamps
+ * alone by 683 lm/W, which gltf_lights.c takes back.
+ * Rests on: Khronos, "glTF 2.0 Specification", 2021, and the KHR extensions that gltf_document.c lists.
  * Flow: file -> gltf_document -> [here] -> gltf_nodes, and import_defaults for what is missing. Threads: one per
  * scene. */
 #define _POSIX_C_SOURCE 200809L
 #include "gltf/gltf_private.h"
 #include "import_defaults.h"
+#include "scene_reader.h"
 
 #include <stdlib.h>
 #include <string.h>

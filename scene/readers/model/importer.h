@@ -1,5 +1,5 @@
 /* importer.h: a scene as it is filled from a file of a foreign format: surfaces, then meshes, then what is missing.
- * Flow: import_scene, obj_file, scene_file (PLY) -> [here: importer.c, import_material.c, import_view.c] -> scene.
+ * Flow: import_scene, obj_file, ply_scene -> [here: importer.c, import_material.c, import_view.c] -> scene.
  * Threads: one per scene. */
 #ifndef AFTERGLOW_IMPORTER_H
 #define AFTERGLOW_IMPORTER_H

@@ -1,8 +1,11 @@
-/* obj_file.c: see obj_file.h; here the statements. Vertices are counted first, so that faces may name those that
- * follow. Threads: one per scene. */
-#include "model/obj_file.h"
-
+/* obj_file.c: the reader of Wavefront OBJ files (scene_reader.h), plain or gzip, and of the MTL files that they name.
+ * There is one mesh for each material; polygons, concave ones too, are cut into triangles; corners without normals have
+ * those of their smoothing group, or none. MTL files and pictures that are not there are warnings. Here are the
+ * statements; vertices are counted first, so that faces may name those that follow.
+ * Rests on: Wavefront, "Object Files", Advanced Visualizer Manual, appendix B1.
+ * Flow: text_lines, mtl_file -> [here], obj_meshes -> importer -> scene. Threads: one per scene. */
 #include "model/obj_private.h"
+#include "scene_reader.h"
 #include "status.h"
 #include "text/text_file.h"
 
