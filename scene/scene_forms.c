@@ -63,7 +63,7 @@ static void add_instances(const scene *s, const scene_form *objects, scene_forms
 
 ag_status scene_forms_create(const scene *s, scene_forms *out_forms)
 {
-    scene_forms f = {.passage = scene_hash_of_passage(s)};
+    scene_forms f = {.passed_surfaces = scene_hash_of_passed_surfaces(s)};
     *out_forms = (scene_forms){0};
     hash128 *of_shapes = malloc(((size_t)s->shape_count + 1) * sizeof *of_shapes);
     scene_form *objects = malloc(((size_t)s->object_count + 1) * sizeof *objects);
@@ -137,7 +137,7 @@ static void gather_boxes(scene_box *boxes, size_t count, scene_difference *out)
 ag_status scene_forms_compare(const scene_forms *a, const scene_forms *b, scene_difference *out_difference)
 {
     *out_difference = (scene_difference){0};
-    if (!hash128_is_equal(a->passage, b->passage))
+    if (!hash128_is_equal(a->passed_surfaces, b->passed_surfaces))
         return AG_OK;
     scene_box *boxes = malloc(((size_t)a->count + b->count + 1) * sizeof *boxes);
     if (!boxes)

@@ -20,7 +20,7 @@ typedef struct scene_form {
 typedef struct scene_forms {
     scene_form *forms; /* owned, sorted */
     uint32_t count;
-    hash128 passage; /* scene_hash_of_passage */
+    hash128 passed_surfaces; /* scene_hash_of_passed_surfaces */
     bool has_curves;
 } scene_forms;
 

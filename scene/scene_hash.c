@@ -212,7 +212,7 @@ hash128 scene_hash_of_form(const scene *s, uint32_t shape_index)
     return begun;
 }
 
-hash128 scene_hash_of_passage(const scene *s)
+hash128 scene_hash_of_passed_surfaces(const scene *s)
 {
     hash128 begun = hash128_begin(), *h = &begun;
     bool has_alpha = false;

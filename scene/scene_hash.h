@@ -17,11 +17,11 @@ hash128 scene_hash_of_light(const struct scene *s);
 hash128 scene_hash_of_view(const struct scene *s);
 
 /* Hashes what rays that ask for surfaces (scene_find_surface, scene_is_blocked) find out about one shape: form, place
- * and holes. Two scenes give equal answers about equal shapes where scene_hash_of_passage is equal as well. */
+ * and holes. Two scenes give equal answers about equal shapes where scene_hash_of_passed_surfaces is equal as well. */
 hash128 scene_hash_of_form(const struct scene *s, uint32_t shape_index);
 
 /* Hashes what decides in all of the scene which surfaces such rays pass: alpha textures, and materials where there are
  * interfaces. */
-hash128 scene_hash_of_passage(const struct scene *s);
+hash128 scene_hash_of_passed_surfaces(const struct scene *s);
 
 #endif
