@@ -4,8 +4,9 @@
 Use: perf/scripts/first_view.py PROGRAM SCENE.pbrt [WIDTHxHEIGHT [STEPS [program's options ...]]]
 Prints the processor, then lines of CSV: scene, state, steps; seconds to the first tiles, to a coarse picture of the whole
 view (a quarter of the width and height), to a full one (one sample of each pixel); CPU seconds of all workers to the
-coarse one and to the full one; medians of the steps; the most memory that the process has had so far, in MB. The camera goes to the side by a fiftieth of the distance to what it looks at, as many steps
-as are asked for (8), each once the picture before is full. cold: one step from the map as it was traced, no irradiance
+coarse one and to the full one; the most memory that the process has had so far, in MB. Times are medians over the steps. The
+camera goes to the side by a fiftieth of the distance to what it looks at, as many steps as are asked for (8), each once the
+picture before is full. cold: one step from the map as it was traced, no irradiance
 computed yet; warm: after the picture itself has had 4 samples a pixel; again: the same steps once more, backwards.
 """
 import os, statistics, sys, tempfile, time

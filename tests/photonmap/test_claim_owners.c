@@ -119,8 +119,8 @@ static void what_need_not_be_waited_for(void **state)
     close(file);
 }
 
-/* A claim of ours that no thread holds, as a copy of the file brings it that was made while one did: it may be taken
- * over once we have another number, which others are told. */
+/* A file that is overwritten by a copy of itself may hold a claim of ours that no thread holds any more. It may be
+ * taken over once we have another number, which other processes can see. */
 static void a_claim_of_ours_that_nobody_holds(void **state)
 {
     (void)state;
@@ -134,7 +134,7 @@ static void a_claim_of_ours_that_nobody_holds(void **state)
     int rounds = 0;
     while (!claim_owners_wait(&a, &wait, word))
         assert_true(++rounds < 100000);
-    assert_true(rounds > 1000); /* a thread of ours has its time */
+    assert_true(rounds > 1000); /* a thread of ours that held it would have had time to finish */
     assert_true(claimer_of(&a) != before);
     assert_false(claim_owners_is_alive(&a, before));
     assert_false(claim_owners_is_alive(&b, before));

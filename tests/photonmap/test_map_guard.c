@@ -13,7 +13,7 @@
 
 enum { BYTES = 4096 };
 
-/* A mapping of a file that has been cut to nothing since. */
+/* Maps a file, guarded where out_guard is not NULL, and then cuts it to nothing. */
 static volatile char *map_lost_file(int *out_guard)
 {
     int file = open(in_folder("lost"), O_RDWR | O_CREAT | O_TRUNC, 0600);
@@ -52,7 +52,7 @@ static void host_handler(int number)
     siglongjmp(back, 1);
 }
 
-/* A library that looks first, and passes on what is not its own. */
+/* A library's handler, which passes all faults on to the handler that it has replaced. */
 static void library_handler(int number, siginfo_t *info, void *context)
 {
     library_faults++;
@@ -67,7 +67,7 @@ static void touch_lost_memory(void)
     munmap((void *)memory, BYTES);
 }
 
-/* The host's handler, ours, a library's, and ours again, which the library passes faults on to. */
+/* Installed are the host's handler, ours, a library's, and ours again. */
 static void faults_of_others_reach_the_host(void **state)
 {
     (void)state;
@@ -80,7 +80,7 @@ static void faults_of_others_reach_the_host(void **state)
     assert_int_equal(sigaction(SIGBUS, &library, &before_library), 0);
     int other;
     volatile char *more = map_lost_file(&other);
-    for (int i = 1; i < 3; i++) { /* again, though the host's handler never returns */
+    for (int i = 1; i < 3; i++) { /* a second time, since the host's handler never returns */
         touch_lost_memory();
         assert_int_equal(host_faults, i);
     }
@@ -96,7 +96,7 @@ static void faults_of_others_reach_the_host(void **state)
 
 int main(void)
 {
-    /* the host's is the first that ours replaces */
+    /* the first one installs the host's handler before ours is there */
     const struct CMUnitTest tests[] = {TEST_IN_FOLDER(faults_of_others_reach_the_host),
                                        TEST_IN_FOLDER(lost_memory_reads_as_zeros)};
     return cmocka_run_group_tests(tests, NULL, NULL);

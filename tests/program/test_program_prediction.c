@@ -99,7 +99,7 @@ static void test_memory(void **state)
     EXPECT_PEAK("--photons=3000", "--spp=8", "--noise=0", "--size=64x64", "--nthreads=8", "-o", "a.exr", GLASS);
 }
 
-/* The difference that an option makes to the peak, in a run or in what is said beforehand. */
+/* Returns by how much memory's peak is higher with one option than with another, measured or predicted. */
 static double peak_more(bool is_dry, const char *option, const char *other)
 {
     double peaks[2];
@@ -115,7 +115,7 @@ static double peak_more(bool is_dry, const char *option, const char *other)
     return peaks[0] - peaks[1];
 }
 
-/* Aiming leaves memory between what is kept, which counts in small scenes. */
+/* Aiming leaves free memory between the blocks that are kept, and in small scenes that counts. */
 static void test_memory_of_aiming(void **state)
 {
     (void)state;

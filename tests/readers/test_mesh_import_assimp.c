@@ -219,7 +219,7 @@ static void lamps_of_blenders_are_in_watts(void **state)
     reading_destroy(&r);
 }
 
-/* The fixture's file with its author, and with words about the surface behind its colour. */
+/* Reads the fixture's file with this author, and with these elements behind the surface's colour. */
 static reading surface_by(const char *author, const char *words)
 {
     char text[8192], authored[8192];
@@ -235,8 +235,8 @@ static reading surface_by(const char *author, const char *words)
 
 #define IOR "<index_of_refraction><float>1.45</float></index_of_refraction>"
 
-/* Blender's Collada says neither roughness nor specular; of a principled material it says the index of refraction, and
- * metallic as reflectivity. */
+/* Blender's Collada files hold neither roughness nor specular. Of a principled material they hold the index of
+ * refraction, and metallic under the name of reflectivity. */
 static void principled_surfaces_of_blenders_shine(void **state)
 {
     (void)state;

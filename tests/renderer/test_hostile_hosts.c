@@ -19,7 +19,7 @@ typedef struct host {
     ag_rendering *rendering;
     ag_render_settings settings;
     ag_film *film;
-    atomic_u32 is_waiting; /* its only thread that writes, so relaxed */
+    atomic_u32 is_waiting; /* only the thread that waits writes it, and it orders nothing: relaxed */
 } host;
 
 static void begin_host(host *h)
@@ -334,7 +334,8 @@ static void a_context_may_go_before_what_was_made_with_it(void **state)
     assert_string_equal(h.d.said, "");
 }
 
-/* Cancels the context a moment later; and where that ends nothing, all waits, so that the test ends. */
+/* Cancels the context a moment later. Where that does not end the wait within ten seconds, ends all waits, so that the
+ * test fails instead of hanging. */
 static void *cancel_later(void *user)
 {
     host *h = user;
@@ -347,7 +348,7 @@ static void *cancel_later(void *user)
     return NULL;
 }
 
-/* A FIFO without a reader, and one whose reader reads nothing. */
+/* Tried with a FIFO that has no reader, and with one whose reader reads nothing. */
 static void cancelling_ends_the_wait_for_a_reader(void **state)
 {
     (void)state;
@@ -360,7 +361,7 @@ static void cancelling_ends_the_wait_for_a_reader(void **state)
         int reader = -1;
         if (i % 2 == 0) {
             assert_int_equal(mkfifo(in_folder(name), 0600), 0);
-        } else { /* full, since a pipe could hold the whole file */
+        } else { /* filled beforehand, since an empty pipe could hold the whole file */
             static const char FILLING[4096];
             reader = open(in_folder(name), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
             const int writer = open(in_folder(name), O_WRONLY | O_NONBLOCK | O_CLOEXEC);

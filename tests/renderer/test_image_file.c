@@ -376,7 +376,8 @@ static void broken_pictures_are_errors(void **state)
     assert_null(back.bytes);
 }
 
-/* OpenImageIO's reader of medical pictures goes over any bytes, one by one, a minute or more for this many. */
+/* OpenImageIO's reader of medical pictures, given bytes of any kind, reads them one by one: a minute or more for these.
+ */
 static void large_files_that_are_no_pictures_are_refused_at_once(void **state)
 {
     (void)state;

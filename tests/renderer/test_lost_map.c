@@ -10,8 +10,8 @@
 
 enum { SIZE = 24, VALUES = 3 * SIZE * SIZE, ENDLESS = 1000000 }; /* so many samples take half an hour */
 
-/* Searches in an overwritten map go by whatever its nodes say, into the bytes beside each value that others publish:
- * between these accesses nothing is ordered, and nothing comes of them. For the thread sanitizer. */
+/* Tells the thread sanitizer which races are expected: searches in an overwritten map follow whatever its nodes now
+ * hold, and read bytes that other threads write without any order between them. Nothing of what they find is used. */
 __attribute__((visibility("default"))) const char *__tsan_default_suppressions(void);
 const char *__tsan_default_suppressions(void) { return "race:irradiance_cache_get\nrace:precompute_block"; }
 
@@ -23,7 +23,7 @@ typedef struct work {
     loss kind;
     ag_phase phase;
     bool is_armed, is_done;
-    double last_fraction; /* of the phase, that was told */
+    double last_fraction; /* the last that was told of the phase */
     char said[512];
     ag_scene *loaded;
     ag_render_settings settings;
@@ -62,7 +62,7 @@ static void watch(void *user, ag_phase phase, double fraction)
     w->is_done = true;
     lose(w);
     if (phase == AG_PHASE_PRECOMPUTE)
-        store_relaxed_u64(&w->context->run.next_look, 0); /* else this would take half a second of work */
+        store_relaxed_u64(&w->context->run.next_look, 0); /* else the map is looked at after half a second only */
 }
 
 static work begin_work(loss kind)
@@ -72,7 +72,7 @@ static work begin_work(loss kind)
     return w;
 }
 
-/* The work stays where it is, for the context's callbacks. */
+/* The context's callbacks refer to the work, which must not move until close_scene. */
 static void open_scene(work *w)
 {
     ag_context_settings made = ag_default_context_settings();
@@ -114,7 +114,7 @@ static void copy_film(const ag_rendering *rendering, float out[VALUES])
     memcpy(out, ag_film_pixels(ag_rendering_film(rendering), &width, &height), VALUES * sizeof *out);
 }
 
-/* The rendering goes on until the map is lost, and its film is then that of before. */
+/* Continues the rendering until the map is lost, and expects that its film is then as before. */
 static void assert_broken_off(work *w, ag_rendering *rendering)
 {
     float before[VALUES], after[VALUES];
@@ -155,7 +155,7 @@ static void a_pass_is_broken_off(void **state)
     }
 }
 
-/* The first pass after a checkpoint was read is broken off: the film is the checkpoint's. */
+/* Where the first pass after reading a checkpoint is broken off, the film is the checkpoint's. */
 static void the_picture_of_a_checkpoint_stays(void **state)
 {
     (void)state;
@@ -173,7 +173,7 @@ static void the_picture_of_a_checkpoint_stays(void **state)
     assert_int_equal(unlink(w.map) | unlink(in_folder("one.checkpoint")), 0);
 }
 
-/* A checkpoint holds irradiances, too: it is not written from a map that was lost. */
+/* Since a checkpoint holds irradiances, none is written from a map that was lost. */
 static void no_checkpoint_of_a_lost_map(void **state)
 {
     (void)state;

@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # Rooms made in Blender and exported by its exporters are as bright here as in Cycles: the means of the pictures, in each
 # channel, are within 0.8 % for glTF where Cycles has Lambert's surfaces, too, 2 % where it has Burley's and 10 % where
-# the material is not quite Blender's, 12 % for FBX and Collada; there surfaces have specular and roughness of Blender's new
-# materials, since it does not write theirs. What a format does not say is named in a warning. Skipped where Blender (with numpy, for its glTF
-# exporter) is not installed.
+# the material is not quite Blender's, 12 % for FBX and Collada. Collada's are held
+# against surfaces with the specular and roughness of Blender's new materials, since Blender leaves out both. A warning names
+# what a format leaves out. Skipped where Blender (with numpy, for its glTF exporter) is not installed.
 # ctest: blender long
 set -euo pipefail
 # shellcheck source=tests/fixtures/shell_test.sh

@@ -297,7 +297,7 @@ static void test_progress_is_rare(void **state)
 enum { WATCHED_BLOCKS = 4000, LOST_AT = 100 };
 typedef struct watched_thing {
     atomic_u64 done, thorough, thorough_at_once, most_at_once;
-    bool is_lost_thoroughly; /* only a thorough look tells that it is lost */
+    bool is_lost_thoroughly; /* only thorough looks find out that it is lost */
 } watched_thing;
 
 static bool look_at_thing(const void *watched, bool thoroughly)
