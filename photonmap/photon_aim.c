@@ -178,6 +178,13 @@ static uint32_t fewer_by_power(const trial_counts *blind, uint32_t wanted)
     return most < (double)wanted ? (uint32_t)most : wanted;
 }
 
+uint32_t photon_aim_round_trials(uint64_t wanted)
+{
+    const uint64_t trials = wanted / PHOTONS_PER_TRIAL,
+                   at_least = trials > ROUND_TRIALS_MIN ? trials : ROUND_TRIALS_MIN;
+    return (uint32_t)(at_least < ROUND_TRIALS_MAX ? at_least : ROUND_TRIALS_MAX);
+}
+
 ag_status photon_aim_learn(const scene *s, run_context *run, const photon_tracing_settings *settings,
                            const emission_starts *starts, float share, photon_aim *out_aim)
 {
@@ -185,11 +192,7 @@ ag_status photon_aim_learn(const scene *s, run_context *run, const photon_tracin
     if (!(share > 0.0f) || !settings->asked || !settings->asked->nodes)
         return AG_OK;
     learner l = {.s = s, .run = run, .settings = *settings, .ways = settings->ways, .share = share};
-    l.round_trials = settings->wanted / PHOTONS_PER_TRIAL;
-    if (l.round_trials < ROUND_TRIALS_MIN)
-        l.round_trials = ROUND_TRIALS_MIN;
-    if (l.round_trials > ROUND_TRIALS_MAX)
-        l.round_trials = ROUND_TRIALS_MAX;
+    l.round_trials = photon_aim_round_trials(settings->wanted);
     l.trials = malloc((size_t)(BLIND_ROUNDS_MAX + ROUNDS_MAX) * l.round_trials * sizeof *l.trials);
     ag_status status = l.trials ? learn(&l, starts, out_aim) : AG_ERROR_MEMORY;
     out_aim->tried = l.counts;

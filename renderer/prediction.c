@@ -7,6 +7,7 @@
 #include "integrator/gather_batch.h"
 #include "integrator/integrator.h"
 #include "integrator/sample_queue.h"
+#include "photon_aim.h"
 #include "public_structs.h"
 #include "render_maps.h"
 #include "split_pilot.h"
@@ -93,10 +94,9 @@ static double aim_bytes_of(const scene *s, const ag_render_settings *settings)
 {
     if (!(settings->photon_aim > 0.0f) || settings->max_depth < 2)
         return 0.0;
-    const double global = fmin(fmax((double)settings->photon_count / 8.0, 4096.0), 65536.0);
-    const double caustic = fmin(fmax((double)settings->caustic_photon_count / 8.0, 4096.0), 65536.0);
-    const double bytes =
-        AIM_BYTES_PER_TRIAL * global + (maps_have_caustics(s, settings) ? CAUSTIC_AIM_BYTES_PER_TRIAL * caustic : 0.0);
+    double bytes = AIM_BYTES_PER_TRIAL * (double)photon_aim_round_trials(settings->photon_count);
+    if (maps_have_caustics(s, settings))
+        bytes += CAUSTIC_AIM_BYTES_PER_TRIAL * (double)photon_aim_round_trials(settings->caustic_photon_count);
     return fmax(bytes - (double)mallinfo2().fordblks, 0.0);
 }
 
