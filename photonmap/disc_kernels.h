@@ -1,8 +1,9 @@
 /* disc_kernels.h: the inner loops of an estimate, in plain C and for AVX2: finding a leaf's photons, selecting the
  * nearest, and summing the photons of a disc. Both versions do the same operations on the same numbers, so that
- * their results have the same bits, which tests/photonmap checks. The plain ones stand for processors without AVX2;
- * the others stay because without them a frame of the Cornell box takes 9 % more CPU time (cornell-box -t 1 --noise
- * 0 --size 160x90 --spp 4 --photons 300000; median of pairs of runs, AMD EPYC).
+ * their results have the same bits, which tests/photonmap checks. The two are not one text in the compiler's vector
+ * types, so that the plain ones, photon by photon, share no code with what they check. The plain ones serve processors
+ * without AVX2; the others stay because without them a frame of the Cornell box takes 9 % more CPU time (cornell-box
+ * -t 1 --noise 0 --size 160x90 --spp 4 --photons 300000; median of pairs of runs, AMD EPYC).
  * Rests on: Intel, "64 and IA-32 Architectures Optimization Reference Manual", ch. on AVX2.
  * Flow: photon_k_nearest, irradiance_estimate -> [here]. Threads: pure but for what the caller owns. */
 #ifndef AFTERGLOW_DISC_KERNELS_H
