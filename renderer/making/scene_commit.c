@@ -130,6 +130,7 @@ static ag_status commit_plan(ag_scene *made)
 static ag_status commit_once(ag_scene *made)
 {
     scene_making *making = made->making;
+    AG_TRY(scene_check_borrowed(making->context->log, making->s));
     AG_TRY(complete(making, making->builder, making->s));
     made->s = making->s;
     making->s = NULL;

@@ -81,6 +81,8 @@ ag_status scene_making_check_arrays(const scene_making *making);
 /* Whether the arrays that shapes of the plan borrow are there, for a commit to read; says in the log which are not.
  * (scene_editing.c) */
 ag_status scene_making_check_kept(const scene_making *making);
+/* Whether the arrays that a scene's shapes borrow are there; says in the log which are not. (scene_memory.c) */
+ag_status scene_check_borrowed(log_sink *log, const scene *s);
 /* The handle of the shape, light or instance that a call makes. */
 ag_handle scene_making_handle(const scene_making *making, const scene_call *c);
 /* Puts a call at a place of the plan of a scene that is committed, or with NULL for it removes the one that is there,

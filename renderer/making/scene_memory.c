@@ -43,6 +43,19 @@ void scene_making_destroy(scene_making *making)
     free(making);
 }
 
+ag_status scene_check_borrowed(log_sink *log, const scene *s)
+{
+    for (uint32_t i = 0; i < s->shape_count; i++)
+        if (borrowed_arrays_are_lost(&s->shapes[i])) {
+            log_message(
+                log, AG_LOG_ERROR,
+                "shape %u of the scene, a mesh of %u triangles: arrays that it borrows were freed or written to", i + 1,
+                s->shapes[i].as.mesh.triangle_count);
+            return AG_ERROR_ARGUMENT;
+        }
+    return AG_OK;
+}
+
 ag_status scene_check_complete(ag_context *context, const ag_scene *made)
 {
     const char *wrong = !context_is_alike(context, made->context) ? "was made with a context of other settings"
@@ -52,15 +65,7 @@ ag_status scene_check_complete(ag_context *context, const ag_scene *made)
     if (wrong)
         log_message(context->log, AG_LOG_ERROR, "the scene %s", wrong);
     AG_TRY(wrong ? AG_ERROR_ARGUMENT : made->making ? scene_making_check_arrays(made->making) : AG_OK);
-    for (uint32_t i = 0; i < made->s->shape_count; i++)
-        if (borrowed_arrays_are_lost(&made->s->shapes[i])) {
-            log_message(
-                context->log, AG_LOG_ERROR,
-                "shape %u of the scene, a mesh of %u triangles: arrays that it borrows were freed or written to", i + 1,
-                made->s->shapes[i].as.mesh.triangle_count);
-            return AG_ERROR_ARGUMENT;
-        }
-    return AG_OK;
+    return scene_check_borrowed(context->log, made->s);
 }
 
 /* --- beginning --- */

@@ -289,6 +289,28 @@ static void freed_arrays_are_told(void **state)
     }
 }
 
+/* So are those that the host frees before the first commit. */
+static void arrays_freed_before_the_commit_are_told(void **state)
+{
+    (void)state;
+    for (int is_editable = 0; is_editable < 2; is_editable++) {
+        desk d;
+        sheet s;
+        words w;
+        make_sheet(&s);
+        if (is_editable)
+            begin_lit_editable(&d);
+        else
+            begin_lit(&d);
+        describe(&s, true, true, &w);
+        assert_int_equal(ag_scene_add_shape(d.made, &w.shape, NULL), AG_OK);
+        drop_sheet(&s);
+        assert_int_equal(ag_scene_commit(d.made), AG_ERROR_ARGUMENT);
+        expect_said(&d, "arrays that it borrows were freed or written to");
+        end(&d);
+    }
+}
+
 static void refused(desk *d, const words *w, const char *what)
 {
     assert_int_equal(ag_scene_add_shape(d->made, &w->shape, NULL), AG_ERROR_ARGUMENT);
@@ -373,6 +395,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(changed_arrays_are_seen, make_folder, remove_folder),
         cmocka_unit_test_setup_teardown(arrays_written_before_a_commit_that_fails, make_folder, remove_folder),
         cmocka_unit_test_setup_teardown(freed_arrays_are_told, make_folder, remove_folder),
+        cmocka_unit_test_setup_teardown(arrays_freed_before_the_commit_are_told, make_folder, remove_folder),
         cmocka_unit_test_setup_teardown(uv_of_another_count_is_told, make_folder, remove_folder),
         cmocka_unit_test_setup_teardown(what_cannot_be_borrowed_is_told, make_folder, remove_folder),
     };

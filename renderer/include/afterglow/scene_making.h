@@ -139,10 +139,11 @@ typedef struct ag_shape {
     /* The library uses the arrays of a "trianglemesh" in place instead of copying them: "P" and "uv", as floats, and
      * "indices". They must stay valid and unchanged until the scene is destroyed, or committed after this shape was
      * changed or removed; and until renderings that still borrow the scene are finished. They are aligned to 4 bytes,
-     * and 4 bytes behind P are readable. Renderings and commits look whether they are there, and begin and end as they
-     * did: arrays that were freed before are AG_ERROR_ARGUMENT. Changes are made by ag_scene_change_shape, best with
-     * other arrays: see scene_editing.h on commits that fail. Arrays that cannot be used in place are copied: P where
-     * the shape has a matrix and does not move, or where a coordinate is -0; indices where a triangle has no area.
+     * and 4 bytes behind P are readable. Renderings and commits look whether they can be read, and begin and end as
+     * they did, and are AG_ERROR_ARGUMENT where not: so most arrays that were freed are found, but not those whose
+     * memory nobody has written to since. Changes are made by ag_scene_change_shape, best with other arrays: see
+     * scene_editing.h on commits that fail. Arrays that cannot be used in place are copied: P where the shape has a
+     * matrix and does not move, or where a coordinate is -0; indices where a triangle has no area.
      * Default false. */
     bool borrows_arrays;
 } ag_shape;
