@@ -256,34 +256,52 @@ static map_cost cost_since(const ag_statistics *now, const ag_statistics *before
     return cost;
 }
 
-/* Maps of fewer photons than those tried, on the line from the wanted counts through the tried ones: *out_step of the
- * way from the tried to the wanted, back. What each photon costs follows, and what is paid once, as for finding out
- * where photons go. */
-static ag_status measure_fewer(ag_context *context, const ag_scene *loaded, const ag_render_settings *wanted,
-                               const ag_render_settings *tried, map_cost *out_cost, double *out_step)
+/* What fewer photons than those tried cost, which tells what each photon costs, and what is paid once, as for finding
+ * out where photons go. */
+typedef struct fewer_photons {
+    map_cost maps;
+    double cpu_s; /* of measuring that */
+    double step;  /* of the way from the tried counts to the wanted ones, back; HUGE_VAL: nothing was measured */
+} fewer_photons;
+
+/* Measures it in silence, since the trial that follows says the same. */
+static fewer_photons measure_fewer(ag_context *context, const ag_scene *loaded, const uint64_t wanted[2],
+                                   const ag_render_settings *tried)
 {
-    static const double PART = 0.45; /* fewer than those tried; photon_aim.c tries as many paths for as many */
-    const double more[] = {(double)wanted->photon_count - (double)tried->photon_count,
-                           (double)wanted->caustic_photon_count - (double)tried->caustic_photon_count};
-    const double steps[] = {more[0] > 0.0 ? PART * (double)tried->photon_count / more[0] : HUGE_VAL,
-                            more[1] > 0.0 ? PART * (double)tried->caustic_photon_count / more[1] : HUGE_VAL};
+    static const double PART = 0.45; /* fewer than those tried: a round of trials (photon_aim.h) has as many then */
+    const uint64_t counts[2] = {tried->photon_count, tried->caustic_photon_count};
+    fewer_photons out = {.step = HUGE_VAL};
+    for (int i = 0; i < 2; i++)
+        if (wanted[i] > counts[i])
+            out.step = fmin(out.step, PART * (double)counts[i] / (double)(wanted[i] - counts[i]));
+    if (out.step == HUGE_VAL)
+        return out;
     ag_render_settings fewer = *tried;
-    ag_rendering *r;
-    *out_step = fmin(steps[0], steps[1]);
-    fewer.photon_count -= (uint64_t)(*out_step * more[0]);
-    fewer.caustic_photon_count -= (uint64_t)(*out_step * more[1]);
+    fewer.photon_count -= (uint64_t)(out.step * (double)(wanted[0] - counts[0]));
+    fewer.caustic_photon_count -= (uint64_t)(out.step * (double)(wanted[1] - counts[1]));
     const ag_statistics before = context->statistics;
-    AG_TRY(ag_rendering_create(context, loaded, &fewer, &r));
-    *out_cost = cost_since(&context->statistics, &before);
-    ag_rendering_finish(r, NULL);
-    return AG_OK;
+    const double cpu_before = clock_process_cpu_seconds();
+    ag_log_fn *const told = log_silence(context->log);
+    ag_rendering *r;
+    if (ag_rendering_create(context, loaded, &fewer, &r) == AG_OK) {
+        out.maps = cost_since(&context->statistics, &before);
+        ag_rendering_finish(r, NULL);
+    } else {
+        out.step = HUGE_VAL; /* the trial that follows says why */
+    }
+    log_speak(context->log, told);
+    out.cpu_s = clock_process_cpu_seconds() - cpu_before;
+    return out;
 }
 
-/* The cost of the wanted photons, from that of the tried ones and of fewer: no less than of the tried ones, and no more
- * than if all were paid by the photon. */
+/* Returns what the wanted photons cost. tried_s: the tried ones; fewer_s: fewer, by step; photons_grown: the wanted
+ * ones over the tried ones. At most, all is paid by the photon; and at least a part, since on a busy machine the
+ * difference of two times tells little. */
 static double cost_of_wanted(double tried_s, double fewer_s, double step, double photons_grown)
 {
-    return fmin(tried_s + fmax(tried_s - fewer_s, 0.0) / step, tried_s * photons_grown);
+    static const double PART_LEAST = 0.4;
+    const double more = tried_s * (photons_grown - 1.0);
+    return tried_s + fmin(fmax(fmax(tried_s - fewer_s, 0.0) / step, PART_LEAST * more), more);
 }
 
 static double at_most(uint64_t count, uint64_t most) { return count > most ? (double)count / (double)most : 1.0; }
@@ -300,14 +318,9 @@ static ag_status predict_time(ag_context *context, const ag_scene *loaded, const
     tried.photon_map_file = NULL;
     tried.photon_paths = 0; /* what the last frame left is for the picture itself */
     tried.cache = settings->cache == AG_CACHE_PRECOMPUTE ? AG_CACHE_ON_DEMAND : settings->cache;
-    map_cost fewer = {{0}};
-    double step = HUGE_VAL;
-    ag_render_settings counted = *settings;
-    counted.caustic_photon_count = caustic_count;
-    const double cpu_at_first = clock_process_cpu_seconds();
-    if (global_grown > 1.0 || caustic_grown > 1.0)
-        AG_TRY(measure_fewer(context, loaded, &counted, &tried, &fewer, &step));
-    const double cpu_of_fewer = clock_process_cpu_seconds() - cpu_at_first;
+    fewer_photons fewer = {.step = HUGE_VAL};
+    if (integrator_of(settings->integrator)->has_photon_map)
+        fewer = measure_fewer(context, loaded, (const uint64_t[2]){settings->photon_count, caustic_count}, &tried);
     const ag_statistics before = context->statistics;
     ag_rendering *r;
     trial pilot = {0}, trials[2] = {0};
@@ -330,11 +343,11 @@ static ag_status predict_time(ag_context *context, const ag_scene *loaded, const
         const double render_cpu_s =
             preparing + predict_samples(r, settings, &pilot, trials, global_grown, &precompute_cpu_s);
         double cpu_before =
-            clock_process_cpu_seconds() - cpu_of_fewer - pilot.cpu_s - trials[0].cpu_s - trials[1].cpu_s - preparing;
+            clock_process_cpu_seconds() - fewer.cpu_s - pilot.cpu_s - trials[0].cpu_s - trials[1].cpu_s - preparing;
         const map_cost tried_cost = cost_since(s, &before);
         for (int i = AG_PHASE_PHOTONS; i <= AG_PHASE_MAP; i++) {
             const double phase_cpu_s = tried_cost.cpu_s[i];
-            const double wanted_s = cost_of_wanted(phase_cpu_s, fewer.cpu_s[i], step, photons_grown);
+            const double wanted_s = cost_of_wanted(phase_cpu_s, fewer.maps.cpu_s[i], fewer.step, photons_grown);
             /* some of it is one thread's; what takes longer than that has waited for a processor */
             out->time_s[i] = fmin(s->time_s[i] - before.time_s[i], phase_cpu_s);
             out->time_s[i] *= phase_cpu_s > 0.0 ? wanted_s / phase_cpu_s : 1.0;

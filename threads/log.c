@@ -40,7 +40,14 @@ void log_destroy(log_sink *log)
     free(log);
 }
 
-void log_silence(log_sink *log) { log->fn = NULL; }
+ag_log_fn *log_silence(log_sink *log)
+{
+    ag_log_fn *fn = log->fn;
+    log->fn = NULL;
+    return fn;
+}
+
+void log_speak(log_sink *log, ag_log_fn *fn) { log->fn = fn; }
 
 static bool is_silent(const log_sink *log) { return !log || !log->fn; }
 

@@ -202,7 +202,7 @@ static const option_row ROWS[] = {
           .manual =
               "Load the scene, predict how long the picture would take on this machine, were it idle, and "
               "how much memory at the most, print that on standard output, and write no picture. For the "
-              "time photons are traced, a million into each map at most, and some hundred blocks of the "
+              "time photons are traced, one and a half million into each map at most, and some hundred blocks of the "
               "picture's pixels are rendered, or half of them where it is small. *--stats* has the times, the CPU time and "
               "the memory by its parts under _prediction_. What *--denoise* takes is not in it, and limits of time, checkpoints and "
               "photon maps that are kept already are not heeded."},

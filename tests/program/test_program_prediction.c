@@ -121,7 +121,7 @@ static void test_memory_of_aiming(void **state)
     (void)state;
     const double predicted = peak_more(true, "--photon-aim=0.8", "--photon-aim=0"),
                  real = peak_more(false, "--photon-aim=0.8", "--photon-aim=0");
-    if (predicted < 0.4 * real || predicted > real + 12e6)
+    if (predicted < 0.4 * real || predicted > real + 4e6)
         fail_msg("predicted %.1f MB more, but it took %.1f more", predicted / 1e6, real / 1e6);
 }
 

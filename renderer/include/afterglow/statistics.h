@@ -47,9 +47,10 @@ static inline ag_status ag_predict_memory(ag_context *context, const ag_scene *l
     return ag_predict_memory_fill(context, loaded, settings, out_prediction, sizeof *out_prediction);
 }
 
-/* Predicts time and memory. It traces photons, a million into each map at most, and renders a part of the picture's
- * blocks of 8 x 8 pixels: half of them in small pictures, some hundred in large ones. A photon map's file is neither
- * read nor written. struct_size: of the program's ag_prediction. Errors: those of ag_render. */
+/* Predicts time and memory. It traces photons, a million into each map at most, and where more are wanted half a
+ * million before that, and renders a part of the picture's blocks of 8 x 8 pixels: half of them in small pictures, some
+ * hundred in large ones. A photon map's file is neither read nor written. struct_size: of the program's ag_prediction.
+ * Errors: those of ag_render. */
 AG_API ag_status ag_predict_fill(ag_context *context, const ag_scene *scene, const ag_render_settings *settings,
                                  void *out_prediction, size_t struct_size);
 static inline ag_status ag_predict(ag_context *context, const ag_scene *loaded, const ag_render_settings *settings,
@@ -97,10 +98,11 @@ typedef struct ag_statistics {
     /* Of the irradiance cache. requests: points at which irradiance was requested; computed: estimates at photons;
      * distinct: photons whose slots became ready, counted in the slots afterwards, those of other processes that fill
      * the map included; deferred: requests set aside because another thread was computing; waited: those of them that
-     * had to wait in the end; duplicated: estimates computed twice, 0; uncached: estimates at gather hits themselves;
+     * had to wait in the end; duplicated: estimates computed twice, 0 but where a claim of a map's file was taken over
+     * from a thread that had stood still for seconds and then went on; uncached: estimates at gather hits themselves;
      * refused: requests at points where no estimate holds, whose light was followed by further bounces instead; ready:
      * photons that were ready before, in a file's map or from the frame before; reclaimed: claims taken over from
-     * processes that had died. */
+     * processes that had died, or from who had stood still for seconds. */
     uint64_t irradiance_requests, irradiance_computed, irradiance_distinct, irradiance_deferred, irradiance_waited,
         irradiance_duplicated, irradiance_uncached, irradiance_refused, irradiance_ready, irradiance_reclaimed;
     double irradiance_estimate_s; /* CPU seconds of estimates, all threads; extrapolated from every sixteenth */
