@@ -354,9 +354,9 @@ static void cancelling_ends_the_wait_for_a_reader(void **state)
     (void)state;
     host h;
     pthread_t thread;
-    static const char *const NAMES[] = {"pipe.exr", "pipe.json", "pipe.ply"};
+    static const char *const NAMES[] = {"pipe.exr", "pipe.json", "pipe.ply", "pipe.state"};
     begin_host(&h);
-    for (int i = 0; i < 6; i++) {
+    for (int i = 0; i < 8; i++) {
         const char *name = NAMES[i / 2];
         int reader = -1;
         if (i % 2 == 0) {
@@ -374,7 +374,8 @@ static void cancelling_ends_the_wait_for_a_reader(void **state)
         assert_int_equal(pthread_create(&thread, NULL, cancel_later, &h), 0);
         const ag_status status = i / 2 == 0   ? ag_film_write(h.d.context, h.film, NULL, in_folder(name))
                                  : i / 2 == 1 ? ag_statistics_write(h.d.context, in_folder(name))
-                                              : ag_rendering_write_photons(h.rendering, in_folder(name));
+                                 : i / 2 == 2 ? ag_rendering_write_photons(h.rendering, in_folder(name))
+                                              : ag_rendering_write_checkpoint(h.rendering, in_folder(name));
         store_relaxed_u32(&h.is_waiting, 0);
         assert_int_equal(pthread_join(thread, NULL), 0);
         if (reader >= 0)

@@ -91,8 +91,8 @@ static inline ag_noise ag_rendering_noise(const ag_rendering *rendering)
 }
 
 /* Writes the samples so far to a file, atomically. Another process that creates the same rendering can read it and
- * continue to the same bits. Errors: AG_ERROR_MEMORY, AG_ERROR_OUTPUT, AG_ERROR_SYSTEM (the photon map's file was
- * truncated or overwritten: nothing is written). */
+ * continue to the same bits. Errors: AG_ERROR_MEMORY, AG_ERROR_OUTPUT, AG_CANCELLED (while the reader of a FIFO was
+ * waited for), AG_ERROR_SYSTEM (the photon map's file was truncated or overwritten: nothing is written). */
 AG_API ag_status ag_rendering_write_checkpoint(const ag_rendering *rendering, const char *path);
 /* Reads a checkpoint; to be called before the first ag_rendering_continue. A file that is damaged, or of another scene,
  * other settings or another version is refused: the log says why, and the rendering stays as it was. Errors:
