@@ -91,8 +91,9 @@ static void take_nap(void)
     nanosleep(&nap, NULL);
 }
 
-/* Another thread of ours goes on as we do. Where the claim stands for seconds nonetheless, no thread has it: the file
- * was overwritten by a copy that was made while the claim was held. With a new number of ours it is a dead one's. */
+/* Another thread of ours goes on as we do. Where the claim stands for seconds nonetheless, no thread has it, since the
+ * file was overwritten by a copy that was made while the claim was held; or its thread alone stands still. With a new
+ * number of ours it is a dead one's. */
 static void wait_for_own(claim_owners *owners, claim_wait *wait, uint32_t word)
 {
     if (wait->word != word)
@@ -100,9 +101,9 @@ static void wait_for_own(claim_owners *owners, claim_wait *wait, uint32_t word)
     wait->rounds++;
     if (wait->rounds < OWN_ROUNDS_AWAKE)
         sched_yield();
-    else if (wait->rounds < OWN_ROUNDS_AWAKE + OWN_NAPS)
-        take_nap();
     else
+        take_nap();
+    if (wait->rounds > OWN_ROUNDS_AWAKE + OWN_NAPS)
         claim_owners_renew(owners, word & IRRADIANCE_VALUE_MASK);
 }
 

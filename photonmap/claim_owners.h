@@ -9,8 +9,9 @@
  * generation, so that no living process writes the number that a dead one's claim carries, and a claim that was taken
  * over cannot be mistaken. All threads of a process share its number, and none of them takes over a claim of that
  * number, whose holder is another working thread; so at most one of the threads that wait for a claim computes it.
- * Where no thread holds it, since the file was overwritten by a copy of itself, the process takes a new number after
- * seconds. */
+ * Where such a claim stands for some four seconds of waiting, as after the file was overwritten by a copy of itself,
+ * the process takes a new number: then its claims may be taken over, and a holder that had stood still computes what
+ * another computes, too (irradiance_slot_publish tells it). */
 #ifndef AFTERGLOW_CLAIM_OWNERS_H
 #define AFTERGLOW_CLAIM_OWNERS_H
 

@@ -78,9 +78,9 @@ static inline bool irradiance_slot_take_over(irradiance_slot *slot, uint32_t *in
 }
 
 /* Publishes the claimer's word, a ready one, which is then final. Release: pairs with read. Returns false where the
- * claim has been taken over, so that another process computes the value too. That happens only to a process that had
- * stalled for so long that it was considered dead; its claims carry another number from then on
- * (claim_owners_renew). */
+ * claim has been taken over, so that another thread computes the value too. That happens only in the map of a file, to
+ * a process or a thread that had stood still for so long that it was considered dead; claims of its process carry
+ * another number from then on (claim_owners_renew). */
 static inline bool irradiance_slot_publish(irradiance_slot *slot, uint32_t claimer, uint32_t ready)
 {
     uint32_t expected = irradiance_word(IRRADIANCE_CLAIMED, claimer);

@@ -205,7 +205,7 @@ static void one_that_stands_still_is_remembered(void **state)
     test_run_reset(&r);
 }
 
-/* A claim of one's own process is another thread's, at work: it is waited for, however long that takes. */
+/* A claim of one's own process is another thread's, at work: it is waited for, for seconds. */
 static void own_claims_are_not_taken_over(void **state)
 {
     (void)state;
