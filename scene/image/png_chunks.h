@@ -1,6 +1,7 @@
 /* png_chunks.h: whether a PNG file's chunks fit into it. Its library takes the memory that a chunk's length promises,
- * up to 2 GiB of a file of some hundred bytes, before it finds that the file ends. Rests on: the PNG specification
- * (second edition), 2003, 5. Flow: image_reader, image_levels -> [here]. Threads: pure functions. */
+ * up to 2 GiB of a file of some hundred bytes, before it finds that the file ends. PNG pictures
+ * within .ico files are not looked at. Rests on: the PNG specification (second edition), 2003, 5. Flow: image_reader,
+ * image_levels -> [here]. Threads: pure functions. */
 #ifndef AFTERGLOW_PNG_CHUNKS_H
 #define AFTERGLOW_PNG_CHUNKS_H
 
