@@ -175,6 +175,23 @@ static const char *left_text(double seconds, char *out, size_t size)
     return out;
 }
 
+/* From here to end_writing this thread alone writes, and Ctrl-Z waits. */
+static void begin_writing(progress *p)
+{
+    pthread_mutex_lock(&terminal);
+    signals_begin_drawing();
+    if (signals_take_stopped()) { /* a shell has written below what is drawn */
+        film_watch_leave(&p->watch);
+        p->bar_is_shown = false;
+    }
+}
+
+static void end_writing(void)
+{
+    signals_end_drawing();
+    pthread_mutex_unlock(&terminal);
+}
+
 static void clear_bar(progress *p)
 {
     if (p->bar_is_shown)
@@ -189,18 +206,6 @@ static void clear_all(progress *p)
         p->bar_is_shown = false; /* with it */
     film_watch_erase(&p->watch, stderr);
     clear_bar(p);
-}
-
-/* Draws the picture; below what a shell has written while the process was stopped, if it was. */
-static void draw_film(progress *p, double now, bool is_last)
-{
-    if (signals_take_stopped()) {
-        film_watch_leave(&p->watch);
-        p->bar_is_shown = false;
-    }
-    signals_begin_drawing();
-    film_watch_draw(&p->watch, stderr, now, is_last);
-    signals_end_drawing();
 }
 
 static void tell_frame_as_json(const progress *p)
@@ -231,7 +236,7 @@ static void tell_bar(progress *p, const char *frame, double left)
 void progress_tell(void *user, ag_phase phase, double fraction)
 {
     progress *p = user;
-    pthread_mutex_lock(&terminal);
+    begin_writing(p);
     const double now = passes_seconds();
     enter_phase(p, phase, fraction, now);
     const double left = seconds_left(p, fraction, now);
@@ -247,7 +252,7 @@ void progress_tell(void *user, ag_phase phase, double fraction)
         p->told_percent = percent;
     switch (p->style) {
     case PROGRESS_PICTURE:
-        draw_film(p, now, false);
+        film_watch_draw(&p->watch, stderr, now, false);
         tell_bar(p, frame, left);
         break;
     case PROGRESS_BAR: tell_bar(p, frame, left); break;
@@ -273,7 +278,7 @@ void progress_tell(void *user, ag_phase phase, double fraction)
     case PROGRESS_AUTO:
     case PROGRESS_NONE: break;
     }
-    pthread_mutex_unlock(&terminal);
+    end_writing();
 }
 
 progress_state progress_read(const progress *p)
@@ -301,10 +306,10 @@ void progress_log(void *user, ag_log_level level, const char *message)
     static const char *const located[] = {": error: ", ": warning: "};
     /* messages about a location in a file say themselves what they are */
     bool has_location = level <= AG_LOG_WARNING && strstr(message, located[level]) != NULL;
-    pthread_mutex_lock(&terminal);
+    begin_writing(p);
     clear_all(p);
     fprintf(stderr, "%s%s%s\n", has_location ? "" : "afterglow: ", has_location ? "" : prefixes[level], message);
-    pthread_mutex_unlock(&terminal);
+    end_writing();
 }
 
 void progress_tell_written(progress *p, const char *const *files, int file_count)
@@ -315,7 +320,7 @@ void progress_tell_written(progress *p, const char *const *files, int file_count
     const bool is_for_people = p->style == PROGRESS_BAR || p->style == PROGRESS_PICTURE || p->style == PROGRESS_PLAIN;
     if (file_count == 0 || (!is_json && !is_for_people))
         return;
-    pthread_mutex_lock(&terminal);
+    begin_writing(p);
     clear_bar(p);
     fprintf(stderr, "%s", is_json ? "{\"written\": [" : "afterglow: wrote ");
     for (int i = 0; i < file_count; i++) {
@@ -336,7 +341,7 @@ void progress_tell_written(progress *p, const char *const *files, int file_count
             fprintf(stderr, " (frame %d of %d)", p->frame + 1, p->frame_count);
         fputc('\n', stderr);
     }
-    pthread_mutex_unlock(&terminal);
+    end_writing();
 }
 
 ag_status progress_prepare_film(progress *p, ag_context *context, const ag_output_settings *output)
@@ -361,19 +366,19 @@ ag_status progress_show_film(progress *p, const ag_film *film)
 
 void progress_leave_film(progress *p, bool is_drawn)
 {
-    pthread_mutex_lock(&terminal);
+    begin_writing(p);
     if (p->watch.film)
         clear_bar(p);
     if (is_drawn)
-        draw_film(p, passes_seconds(), true);
+        film_watch_draw(&p->watch, stderr, passes_seconds(), true);
     film_watch_end(&p->watch);
-    pthread_mutex_unlock(&terminal);
+    end_writing();
 }
 
 void progress_finish(progress *p)
 {
-    pthread_mutex_lock(&terminal);
+    begin_writing(p);
     clear_bar(p);
     terminal_query_forget();
-    pthread_mutex_unlock(&terminal);
+    end_writing();
 }

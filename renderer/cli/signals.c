@@ -11,15 +11,39 @@
 #include <stdatomic.h>
 #include <stddef.h>
 #include <sys/time.h>
+#include <time.h>
 #include <unistd.h>
 
 static ag_context *signalled_context;
 static volatile sig_atomic_t stop_signal, wants_snapshot, is_rendering;
 
-static volatile sig_atomic_t resets_terminal, ends_sixels, was_stopped;
+static volatile sig_atomic_t resets_terminal, ends_sixels;
 /* Of the thread that draws and of the handler of SIGTSTP, which may run on any thread. */
 static atomic_int drawing_state;
-enum { DRAWING_NOTHING, DRAWING, DRAWING_BEFORE_STOP };
+static atomic_bool was_stopped;
+enum {
+    DRAWING_NOTHING,
+    DRAWING,
+    DRAWING_BEFORE_STOP,
+    DRAWING_IN_STOP,   /* the second SIGTSTP did not wait */
+    DRAWING_FORBIDDEN, /* from before the terminal is reset until the process goes on: nobody draws */
+    DRAWING_STATES
+};
+static const int STATE_BY_SIGNAL[DRAWING_STATES] = {[DRAWING_NOTHING] = DRAWING_FORBIDDEN,
+                                                    [DRAWING] = DRAWING_BEFORE_STOP,
+                                                    [DRAWING_BEFORE_STOP] = DRAWING_IN_STOP,
+                                                    [DRAWING_IN_STOP] = DRAWING_IN_STOP,
+                                                    [DRAWING_FORBIDDEN] = DRAWING_FORBIDDEN};
+static const int STATE_BY_END[DRAWING_STATES] = {[DRAWING_NOTHING] = DRAWING_NOTHING,
+                                                 [DRAWING] = DRAWING_NOTHING,
+                                                 [DRAWING_BEFORE_STOP] = DRAWING_FORBIDDEN,
+                                                 [DRAWING_IN_STOP] = DRAWING_FORBIDDEN,
+                                                 [DRAWING_FORBIDDEN] = DRAWING_FORBIDDEN};
+static const int STATE_BY_GOING_ON[DRAWING_STATES] = {[DRAWING_NOTHING] = DRAWING_NOTHING,
+                                                      [DRAWING] = DRAWING,
+                                                      [DRAWING_BEFORE_STOP] = DRAWING_BEFORE_STOP,
+                                                      [DRAWING_IN_STOP] = DRAWING,
+                                                      [DRAWING_FORBIDDEN] = DRAWING_NOTHING};
 
 static bool is_released; /* signals are blocked, by us */
 
@@ -50,30 +74,41 @@ static void leave_terminal(void)
     terminal_query_forget();
 }
 
-/* In the handler of SIGTSTP: the process stops here, as it would without the handler, and goes on here. */
+/* The state before. */
+static int change_drawing_state(const int next[DRAWING_STATES])
+{
+    int state = atomic_load(&drawing_state);
+    while (!atomic_compare_exchange_weak(&drawing_state, &state, next[state])) {
+    }
+    return state;
+}
+
+/* The process stops here, as it would without the handler, and goes on here. The state, DRAWING_FORBIDDEN or
+ * DRAWING_IN_STOP, keeps others from being here too; the signal may be one that this thread blocks. */
 static void stop_process(int number)
 {
     struct sigaction by_default = {.sa_handler = SIG_DFL}, before;
-    sigset_t own;
+    sigset_t own, mask;
     reset_terminal();
-    sigaction(number, &by_default, &before);
-    raise(number);
     sigemptyset(&own);
     sigaddset(&own, number);
+    pthread_sigmask(SIG_BLOCK, &own, &mask);
+    sigaction(number, &by_default, &before);
+    raise(number);
     pthread_sigmask(SIG_UNBLOCK, &own, NULL);
     pthread_sigmask(SIG_BLOCK, &own, NULL);
     sigaction(number, &before, NULL);
-    was_stopped = 1;
+    atomic_store(&was_stopped, true);
+    change_drawing_state(STATE_BY_GOING_ON);
+    pthread_sigmask(SIG_SETMASK, &mask, NULL);
 }
 
 static void on_terminal_stop(int number)
 {
-    int drawing = DRAWING, waiting = DRAWING_BEFORE_STOP;
     const int error = errno;
-    if (!atomic_compare_exchange_strong(&drawing_state, &drawing, DRAWING_BEFORE_STOP)) {
-        atomic_compare_exchange_strong(&drawing_state, &waiting, DRAWING); /* that stop is this one */
+    const int state = change_drawing_state(STATE_BY_SIGNAL);
+    if (state == DRAWING_NOTHING || state == DRAWING_BEFORE_STOP) /* in a stop, that stop is this one */
         stop_process(number);
-    }
     errno = error;
 }
 
@@ -87,20 +122,22 @@ void signals_reset_terminal(bool has_sixels)
         sigaction(SIGTSTP, &action, NULL);
 }
 
-void signals_begin_drawing(void) { atomic_store(&drawing_state, DRAWING); }
+void signals_begin_drawing(void)
+{
+    const struct timespec a_while = {.tv_nsec = 1000000};
+    for (int nothing = DRAWING_NOTHING; !atomic_compare_exchange_strong(&drawing_state, &nothing, DRAWING);
+         nothing = DRAWING_NOTHING)
+        nanosleep(&a_while, NULL);
+}
 
 void signals_end_drawing(void)
 {
-    if (atomic_exchange(&drawing_state, DRAWING_NOTHING) == DRAWING_BEFORE_STOP)
-        kill(getpid(), SIGTSTP); /* this thread may be one that takes no signals */
+    /* the stop is here and not in another thread's handler, before which this thread might write more */
+    if (change_drawing_state(STATE_BY_END) == DRAWING_BEFORE_STOP)
+        stop_process(SIGTSTP);
 }
 
-bool signals_take_stopped(void)
-{
-    const bool was = was_stopped;
-    was_stopped = 0;
-    return was;
-}
+bool signals_take_stopped(void) { return atomic_exchange(&was_stopped, false); }
 
 static void on_stop(int number)
 {
@@ -151,8 +188,7 @@ static void on_abort(int number)
         "limited: try -t with fewer threads, or higher limits (ulimit -u, ulimit -v)\n";
     (void)number;
     leave_terminal();
-    ssize_t ignored = write(STDERR_FILENO, TEXT, sizeof TEXT - 1);
-    (void)ignored;
+    write_to_terminal(TEXT, sizeof TEXT - 1);
     ag_abandon_files();
     _exit(3);
 }

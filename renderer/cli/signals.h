@@ -1,6 +1,7 @@
 /* signals.h: what the system tells the program while it works: stop, show the picture so far, time is up.
- * Flow: handlers -> [here] -> main, passes. Threads: main alone asks, but
- * for the drawing; handlers do no more than set flags, end the process or stop it. */
+ * Flow: handlers -> [here] -> main, passes, progress. Threads: main's alone, but for the functions about drawing, which
+ * progress calls from any thread. Handlers set flags and pause or cancel the context; those that end the process or
+ * stop it reset the terminal before, and those that end it at once write why and remove unfinished files. */
 #ifndef AFTERGLOW_SIGNALS_H
 #define AFTERGLOW_SIGNALS_H
 
@@ -15,11 +16,13 @@ void signals_catch_abort(void);
  * sixels, where has_sixels, resets the terminal's attributes and begins a line, if the terminal takes that within a
  * second; one that ends it takes a late answer of the terminal's away too. */
 void signals_reset_terminal(bool has_sixels);
-/* Between these two calls the first SIGTSTP waits for the second call, so that the drawing is whole; the next one stops
- * the process at once. To be called by one thread at a time. */
+/* Between these two calls the first SIGTSTP waits for the second call, which then stops the process before it returns,
+ * so that what is drawn is whole and nothing follows it; the next SIGTSTP stops the process at once. The first call
+ * waits while the process is being stopped. To be called by one thread at a time. */
 void signals_begin_drawing(void);
 void signals_end_drawing(void);
-/* Whether the process was stopped by SIGTSTP since this was called last: others may have written to the terminal. */
+/* Whether the process was stopped by SIGTSTP since this was called last: others may have written to the terminal. To be
+ * called while drawing, when no stop but by a second SIGTSTP can come between the answer and what is drawn. */
 bool signals_take_stopped(void);
 
 /* The first SIGINT, SIGTERM, SIGHUP or SIGXCPU (a soft limit of CPU time) lets the work end in order: rendering pauses,
