@@ -79,10 +79,14 @@ _SLOPES = {3: np.array([_slope(np.arange(16, dtype=np.uint32), *axis) for axis i
 def _around(cells, steps, made):
     """For each step what is made of the cells (dimensions, n) that are that far away: of every cell around once, where those
     are few beside the points, since each has many of them."""
+    one_by_one = (made(cells + step[:, None]) for step in steps)
+    if not cells.size:  # without the extremes that follow
+        yield from one_by_one
+        return
     low, high = cells.min(axis=1) + steps.min(axis=0), cells.max(axis=1) + steps.max(axis=0)
     sizes = high - low + 1
     if not sizes.prod() <= 0.25 * len(steps) * cells.shape[1]:  # also where they are no numbers
-        yield from (made(cells + step[:, None]) for step in steps)
+        yield from one_by_one
         return
     ways = np.cumprod(np.append(1, sizes[:-1]))
     all_of_them = low[:, None] + (np.arange(sizes.prod()) // ways[:, None]) % sizes[:, None]
