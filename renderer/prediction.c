@@ -256,8 +256,8 @@ static map_cost cost_since(const ag_statistics *now, const ag_statistics *before
     return cost;
 }
 
-/* What fewer photons than those tried cost, which tells what each photon costs, and what is paid once, as for finding
- * out where photons go. */
+/* The cost of maps of fewer photons than those tried. The difference tells what each photon costs; the rest is paid
+ * once, as for finding out where photons go. */
 typedef struct fewer_photons {
     map_cost maps;
     double cpu_s; /* of measuring that */

@@ -43,8 +43,8 @@ typedef struct split_trial {
     split_counts counts;
 } split_trial;
 
-/* What a small picture of the whole frame tells before the first sample. Samples have no part in it, so a film that is
- * emptied keeps it. */
+/* The numbers that a small picture of the whole frame tells before the first sample. Samples have no part in it, so a
+ * film that is emptied keeps it. */
 typedef struct split_prior {
     double cost_per_variance; /* of the frame's camera samples; 0: each block chooses for itself */
     split_counts *first;      /* of the first samples, by film_block_number; owned; NULL: splitting_first of all */

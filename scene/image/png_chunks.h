@@ -10,7 +10,7 @@
 
 /* NULL: bytes are no PNG file, or one whose chunks fit; else what is wrong. */
 const char *png_chunks_wrong(const unsigned char *bytes, size_t size);
-/* The same of a file; NULL where it cannot be read. */
+/* Returns what is wrong with a file, as png_chunks_wrong does; NULL also where it cannot be read. */
 const char *png_file_chunks_wrong(const char *path);
 
 #endif

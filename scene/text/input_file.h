@@ -37,8 +37,8 @@ bool input_files_has(const input_files *files, uint64_t device, uint64_t inode);
  * error_size bytes, says why, without the path. */
 int input_file_open(const run_context *run, const char *path, char *error, size_t error_size);
 
-/* The same as a stream, of a file that has been asked for before; NULL: it cannot be opened, or is no regular file any
- * more. */
+/* Opens a file as a stream that has been opened or asked for before; returns NULL where it cannot be opened, or is no
+ * regular file any more. */
 FILE *input_file_stream(const char *path);
 
 /* A number that differs where a file may have changed; 0 where that cannot be told. */

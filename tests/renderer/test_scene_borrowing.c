@@ -244,6 +244,18 @@ static void arrays_written_before_a_commit_that_fails(void **state)
     drop_sheet(&s);
 }
 
+/* Begins a scene with a sheet whose arrays it borrows, and does not commit it. out_handle: NULL is fine. */
+static void begin_with_borrowed(desk *d, bool is_editable, const sheet *s, ag_handle *out_handle)
+{
+    words w;
+    if (is_editable)
+        begin_lit_editable(d);
+    else
+        begin_lit(d);
+    describe(s, true, true, &w);
+    assert_int_equal(ag_scene_add_shape(d->made, &w.shape, out_handle), AG_OK);
+}
+
 /* Arrays that the host has freed are named by renderings and commits, and read by neither: unmapped ones, and such as
  * allocators write into. */
 static void freed_arrays_are_told(void **state)
@@ -255,16 +267,10 @@ static void freed_arrays_are_told(void **state)
         const bool is_editable = variant % 2 == 1, is_unmapped = variant / 2 == 1;
         desk d;
         sheet s;
-        words w;
         ag_handle handle;
         float pixels[COUNT];
         make_sheet(&s);
-        if (is_editable)
-            begin_lit_editable(&d);
-        else
-            begin_lit(&d);
-        describe(&s, true, true, &w);
-        assert_int_equal(ag_scene_add_shape(d.made, &w.shape, &handle), AG_OK);
+        begin_with_borrowed(&d, is_editable, &s, &handle);
         assert_int_equal(ag_scene_commit(d.made), AG_OK);
         render(d.context, d.made, pixels);
         if (is_unmapped)
@@ -296,14 +302,8 @@ static void arrays_freed_before_the_commit_are_told(void **state)
     for (int is_editable = 0; is_editable < 2; is_editable++) {
         desk d;
         sheet s;
-        words w;
         make_sheet(&s);
-        if (is_editable)
-            begin_lit_editable(&d);
-        else
-            begin_lit(&d);
-        describe(&s, true, true, &w);
-        assert_int_equal(ag_scene_add_shape(d.made, &w.shape, NULL), AG_OK);
+        begin_with_borrowed(&d, is_editable, &s, NULL);
         drop_sheet(&s);
         assert_int_equal(ag_scene_commit(d.made), AG_ERROR_ARGUMENT);
         expect_said(&d, "arrays that it borrows were freed or written to");

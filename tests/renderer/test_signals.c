@@ -72,7 +72,7 @@ static void end(void)
     close(d.told[1]);
 }
 
-/* What the terminal has been sent up to here: the system brings it in its own time, but in its order. */
+/* Reads what the terminal has been sent up to here. The system brings it in its own time, but in its order. */
 static const char *sent(void)
 {
     static const char MARK[] = "<end>";

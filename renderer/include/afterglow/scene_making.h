@@ -143,8 +143,7 @@ typedef struct ag_shape {
      * they did, and are AG_ERROR_ARGUMENT where not: so most arrays that were freed are found, but not those whose
      * memory nobody has written to since. Changes are made by ag_scene_change_shape, best with other arrays: see
      * scene_editing.h on commits that fail. Arrays that cannot be used in place are copied: P where the shape has a
-     * matrix and does not move, or where a coordinate is -0; indices where a triangle has no area.
-     * Default false. */
+     * matrix and does not move, or where a coordinate is -0; indices where a triangle has no area. Default false. */
     bool borrows_arrays;
 } ag_shape;
 AG_DEFAULT_STRUCT(shape, AG_STRUCT_SHAPE)
