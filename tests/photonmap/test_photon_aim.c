@@ -2,7 +2,6 @@
  * there, the light is that of the closed form, and all is the same for any number of threads. Where light comes in by
  * the ground before a window, paths are split there, and no few photons hold much of the light.
  * Threads: those of the tracing. */
-/* ctest: long */
 #include "photon_aim.h"
 
 #include "fixtures/test_scene.h"
@@ -188,6 +187,8 @@ static result trace_seeds(test_run *r, const scene *s, photon_order order)
 static void a_small_window_is_found_and_its_light_is_right(void **state)
 {
     (void)state;
+    if (IS_SANITIZED)
+        skip(); /* statistics of what any_number_of_threads_has_the_same_photons runs */
     test_run r;
     test_run_init(&r, 2);
     scene *s = room_scene(&r, SKY);
@@ -201,7 +202,7 @@ static void a_small_window_is_found_and_its_light_is_right(void **state)
     assert_close(plain.direct, THROUGH_WINDOW, 3.0 * plain.direct_error);
     assert_close(aimed.direct, THROUGH_WINDOW, 3.0 * aimed.direct_error);
     assert_close(aimed.all, plain.all, 3.0 * hypot(aimed.all_error, plain.all_error));
-    assert_true(aimed.share > 10.0 * plain.share / WIDER);
+    assert_true(aimed.share > 10.0 * plain.share);
     importance_map_reset(&asked);
     scene_destroy(s);
     test_run_reset(&r);
@@ -234,6 +235,8 @@ static void no_photon_is_more_than_five_times_as_bright(void **state)
 static void paths_are_split_where_their_light_comes_in(void **state)
 {
     (void)state;
+    if (IS_SANITIZED)
+        skip(); /* statistics of what any_number_of_threads_has_the_same_photons runs */
     test_run r;
     test_run_init(&r, 2);
     scene *s = scene_of(&r, SIDE_ROOM, SKY);
@@ -246,26 +249,34 @@ static void paths_are_split_where_their_light_comes_in(void **state)
                   aimed.squares, split.squares);
     assert_close(split.all, plain.all, 3.0 * hypot(split.all_error, plain.all_error));
     assert_close(split.all, aimed.all, 3.0 * hypot(split.all_error, aimed.all_error));
-    assert_true(FEWER > 1 || split.squares < 0.8 * aimed.squares);
+    assert_true(split.squares < 0.8 * aimed.squares);
     importance_map_reset(&asked);
     importance_map_reset(&onward);
     scene_destroy(s);
     test_run_reset(&r);
 }
 
-/* Caustics of brushed metal, a tray below the window and a ledge on the ground outside: as bright as by power alone,
- * within 3 sigma, and with parts fewer photons hold less of the light. */
-static void caustics_are_split_by_rough_metal(void **state)
+/* SIDE_ROOM with brushed metal: a tray below the window, and a ledge on the ground outside. */
+static void add_metal(char *out_shapes, size_t size)
 {
-    (void)state;
-    test_run r;
-    test_run_init(&r, 2);
-    char shapes[4096];
-    snprintf(shapes, sizeof shapes,
+    snprintf(out_shapes, size,
              "%sMaterial \"conductor\" \"float roughness\" 0.3 \"bool remaproughness\" false\n"
              "Shape \"bilinearmesh\" \"point3 P\" [-0.9 -0.4 0.5  -0.1 -0.4 0.5  -0.9 0.4 0.5  -0.1 0.4 0.5]\n"
              "Shape \"bilinearmesh\" \"point3 P\" [1.2 -2 0.02  3 -2 0.02  1.2 2 0.02  3 2 0.02]\n",
              SIDE_ROOM);
+}
+
+/* Caustics of that metal: as bright as by power alone, within 3 sigma, and with parts fewer photons hold less of the
+ * light. */
+static void caustics_are_split_by_rough_metal(void **state)
+{
+    (void)state;
+    if (IS_SANITIZED)
+        skip(); /* statistics of what any_number_of_threads_has_the_same_photons runs */
+    test_run r;
+    test_run_init(&r, 2);
+    char shapes[4096];
+    add_metal(shapes, sizeof shapes);
     scene *s = scene_of(&r, shapes, SKY);
     importance_map asked = ask_inside();
     photon_order order = {.kind = PHOTON_CAUSTIC};
@@ -279,22 +290,20 @@ static void caustics_are_split_by_rough_metal(void **state)
                   aimed.squares, split.squares);
     assert_close(split.all, plain.all, 3.0 * hypot(split.all_error, plain.all_error));
     assert_close(split.all, aimed.all, 3.0 * hypot(split.all_error, aimed.all_error));
-    assert_true(FEWER > 1 || split.squares < 0.8 * aimed.squares);
+    assert_true(split.squares < 0.8 * aimed.squares);
     importance_map_reset(&asked);
     scene_destroy(s);
     test_run_reset(&r);
 }
 
-static void any_number_of_threads_has_the_same_photons(void **state)
+static void expect_same_for_any_threads(const char *shapes, photon_order order)
 {
-    (void)state;
     photon_set first = {0};
-    importance_map asked = ask_inside(), onward = pass_to_inside();
     for (unsigned threads = 1; threads <= 3; threads++) {
         test_run r;
         test_run_init(&r, threads);
-        scene *s = scene_of(&r, SIDE_ROOM, SKY);
-        photon_set set = trace(&r, s, (photon_order){.asked = &asked, .onward = &onward}, 7);
+        scene *s = scene_of(&r, shapes, SKY);
+        photon_set set = trace(&r, s, order, 7);
         assert_true(set.parts > 0);
         if (threads == 1) {
             first = set;
@@ -308,6 +317,16 @@ static void any_number_of_threads_has_the_same_photons(void **state)
         test_run_reset(&r);
     }
     photon_set_reset(&first);
+}
+
+static void any_number_of_threads_has_the_same_photons(void **state)
+{
+    (void)state;
+    char shapes[4096];
+    importance_map asked = ask_inside(), onward = pass_to_inside();
+    expect_same_for_any_threads(SIDE_ROOM, (photon_order){.asked = &asked, .onward = &onward});
+    add_metal(shapes, sizeof shapes);
+    expect_same_for_any_threads(shapes, (photon_order){.kind = PHOTON_CAUSTIC, .asked = &asked});
     importance_map_reset(&onward);
     importance_map_reset(&asked);
 }
