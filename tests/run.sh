@@ -2,7 +2,7 @@
 # run.sh: installs what is missing, builds, and runs the tests.
 # Use: tests/run.sh            release (all tests), dev and tsan (those that suit sanitizers), and a build with clang
 #      tests/run.sh PRESET...  these alone: release, dev, tsan, release-clang, dev-clang, tsan-clang
-#      tests/run.sh --quick    the unit tests in release that are not marked as long: within two minutes on two cores, once built
+#      tests/run.sh --quick    the unit tests in release that are not long: within two minutes on two cores, once built
 # It says first what it will do and how long that takes.
 # The last line is "N passed, N failed, N skipped"; a build that fails is a failed test. Exit code 1 on any failure.
 set -euo pipefail

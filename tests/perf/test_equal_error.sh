@@ -1,7 +1,6 @@
 #!/usr/bin/env bash
 # equal_error.sh's quick form on two small scenes, with rivals: tables are whole, a rival that is path tracing is as good
 # as path tracing, what has a bias shows it, what fails is named, and what is measured is not measured again.
-# ctest: long
 set -euo pipefail
 # shellcheck source=tests/fixtures/shell_test.sh
 source "$(dirname "${BASH_SOURCE[0]}")/../fixtures/shell_test.sh"

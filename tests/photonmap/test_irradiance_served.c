@@ -1,7 +1,7 @@
 /* test_irradiance_served.c: the irradiance that a point receives through the cache is right in the mean, over points
  * drawn evenly from all the surfaces of a scene. Where no estimate holds, a point receives the truth instead, as the
  * renderer follows the light on from there. Threads: one at a time. */
-/* ctest: long */
+/* ctest: serial */
 #include "irradiance_cache.h"
 
 #include "fixtures/test_scene.h"

@@ -1,6 +1,6 @@
 /* test_photon_file.c: maps in a file: the same answers, kept irradiances; what is of something else is refused.
  * Threads: one. */
-/* ctest: sanitize long */
+/* ctest: sanitize */
 #define _GNU_SOURCE
 #include "fixtures/photon_file_fixture.h"
 

@@ -1,6 +1,6 @@
 /* test_photon_file_damage.c: a photon map's file with damage is refused, or costs the irradiances in question alone: no
  * flipped bit reaches a picture. Threads: one. */
-/* ctest: sanitize long */
+/* ctest: sanitize */
 #define _GNU_SOURCE
 #include "fixtures/photon_file_fixture.h"
 

@@ -1,6 +1,6 @@
 /* test_photon_file_processes.c: processes that share a map's file compute nothing twice, and what dead or stopped ones
  * have left is found. Threads: processes of its own, and threads that take claims. */
-/* ctest: sanitize long */
+/* ctest: sanitize */
 #define _GNU_SOURCE
 #include "clock.h"
 #include "fixtures/photon_file_fixture.h"

@@ -1,7 +1,6 @@
 /* test_program_agreement_surfaces.c: photon map and path tracer show the same light on surfaces that are not diffuse:
  * glass, rough metal and a mirror; rough coats; glTF's material in many ways; alpha, bump maps and brushed metal. All
  * light, and indirect light alone. Flow: tests of the whole program. Threads: the program's. */
-/* ctest: long */
 #define _GNU_SOURCE
 #include "fixtures/program_agreement.h"
 

@@ -2,7 +2,7 @@
  * rendered, how large, with how many samples and threads; the same light as by power alone and as path tracing has; and
  * kept maps that say what they are aimed at.
  * Flow: tests of the whole program. Threads: the program's. */
-/* ctest: sanitize long */
+/* ctest: sanitize */
 #define _GNU_SOURCE
 #include "fixtures/program_agreement.h"
 #include "fixtures/sanitizer.h"

@@ -1,7 +1,6 @@
 /* test_program_curves.c: light on curves: a furnace in which they cannot be seen, a tube as bright as a cylinder, and a
  * tuft of hair on a floor that both integrators show alike, all light and indirect light alone; and so what ribbons of
  * hair send to a floor. Flow: tests of the whole program. Threads: the program's. */
-/* ctest: long */
 #define _GNU_SOURCE
 #include "fixtures/program_agreement.h"
 

@@ -1,7 +1,7 @@
 /* test_program_direct_guiding.c: direct light guided by what a pilot has seen: the irradiance below a window in a roof
  * is that of its form factor, with a fraction of the noise; and parts of a picture have the bits of the whole.
  * Flow: tests of the whole program. Threads: the program's. */
-/* ctest: sanitize long */
+/* ctest: sanitize */
 #define _GNU_SOURCE
 #include "fixtures/program_agreement.h"
 #include "fixtures/sanitizer.h"

@@ -1,7 +1,6 @@
 /* test_program_display.c: --display-server: a viewer that speaks tev's protocol is shown the picture while it is
  * rendered, and has the file's pixels in the end; one that is not there, goes, or does not listen costs a warning and
  * no more. Threads: the viewer's. */
-/* ctest: long */
 #define _GNU_SOURCE
 #include "fixtures/program_picture.h"
 #include "fixtures/viewer.h"

@@ -1,7 +1,6 @@
 /* test_program_edges.c: with default settings, where surfaces end: a thin table leg on a floor, a corner of 10 degrees,
  * a wall without thickness between a lit room and a dark one, a step of 1 mm. Estimates there must neither lose light
  * past the edge nor find the next room's. Flow: tests of the whole program. Threads: the program's. */
-/* ctest: long */
 #define _GNU_SOURCE
 #include "fixtures/program_agreement.h"
 

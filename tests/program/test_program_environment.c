@@ -1,7 +1,6 @@
 /* test_program_environment.c: light from all around: bodies in environments whose answer is known, and a box under a
  * sky that photon map and path tracer must show alike. Rests on: Pharr, Jakob, Humphreys, 4th ed., 2023, 4.2 (furnace
  * tests). Flow: tests of the whole program. Threads: the program's. */
-/* ctest: long */
 #define _GNU_SOURCE
 #include "fixtures/program_agreement.h"
 

@@ -2,7 +2,6 @@
  * sample less noise, for they go to many reflected or refracted hits and not all to one.
  * Rests on: Arvo, Kirk, "Particle Transport and Image Synthesis", 1990 (splitting).
  * Flow: tests of the whole program. Threads: the program's. */
-/* ctest: long */
 #define _GNU_SOURCE
 #include "fixtures/program_agreement.h"
 

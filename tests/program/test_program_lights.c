@@ -1,6 +1,5 @@
 /* test_program_lights.c: lights with pictures, windows, and many lamps in a room: photon map and path tracer show the
  * same. Flow: tests of the whole program. Threads: the program's. */
-/* ctest: long */
 #define _GNU_SOURCE
 #include "fixtures/program_agreement.h"
 

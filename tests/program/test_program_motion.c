@@ -1,7 +1,6 @@
 /* test_program_motion.c: what moves while the shutter is open: the part of the time that a point is covered, in closed
  * form; a camera that moves and a world that moves the other way; photon map and path tracer where what moves reflects.
  * Flow: tests of the whole program. Threads: the program's. */
-/* ctest: long */
 #define _GNU_SOURCE
 #include "fixtures/program_agreement.h"
 

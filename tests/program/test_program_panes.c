@@ -2,7 +2,6 @@
  * points, skies and large lamps behind it; two panes and what goes to and fro between them; a room with windows against
  * the path tracer that knows no panes; the layers; the same bits.
  * Flow: tests of the whole program. Threads: the program's. */
-/* ctest: long */
 #define _GNU_SOURCE
 #include "fixtures/pane_light.h"
 

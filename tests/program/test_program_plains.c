@@ -1,7 +1,6 @@
 /* test_program_plains.c: small things on a ground of kilometres under the sky: a house with a window, a glass ball.
  * Most photons would lie far away, and discs be as large as houses; the photon map must be as right as the path tracer
  * all the same. Flow: tests of the whole program. Threads: the program's. */
-/* ctest: long */
 #define _GNU_SOURCE
 #include "fixtures/program_agreement.h"
 

@@ -1,7 +1,6 @@
 /* test_program_seams.c: what models have where their parts meet: thin walls, gaps of 1 mm, coplanar and overlapping
  * faces, flipped normals, panes within panes, lamps inside of fixtures, steep reliefs. In a room of 4 m x 3 m x 4 m the
  * photon map has the path tracer's light. Flow: tests of the whole program. Threads: the program's. */
-/* ctest: long */
 #define _GNU_SOURCE
 #include "fixtures/program_agreement.h"
 

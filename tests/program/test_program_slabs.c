@@ -2,7 +2,6 @@
  * for suns, skies, points and glass that absorbs; a white furnace; what the eye sees; blocks, which bend light as ever;
  * a room behind slabs against paths that know no panes; the same bits. Flow: tests of the whole program. Threads: the
  * program's. */
-/* ctest: long */
 #define _GNU_SOURCE
 #include "fixtures/pane_light.h"
 #include "fixtures/slab_text.h"

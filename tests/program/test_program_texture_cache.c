@@ -1,7 +1,6 @@
 /* test_program_texture_cache.c: pictures kept in a folder between runs: the same bits with it and without, from its
  * files and while they are made, by many processes at once, after kills, changes, damage and a bound; a folder that
  * cannot be written is told. Flow: tests of the whole program. Threads: the program's. */
-/* ctest: long */
 #define _GNU_SOURCE
 #include "fixtures/program_textures.h"
 #include "math/rng.h"

@@ -3,7 +3,6 @@
  * and the plane in a mirror; whatever the number of threads and the memory for textures, in parts and as a whole the
  * bits are the same; checkerboards are filtered, too.
  * Flow: tests of the whole program. Threads: the program's. */
-/* ctest: long */
 #define _GNU_SOURCE
 #include "fixtures/program_agreement.h"
 #include "fixtures/program_textures.h"

@@ -1,7 +1,6 @@
 /* test_program_texture_levels.c: files that hold tiles and coarser levels: their own levels are what is seen from afar;
  * the same bits in memory and tile by tile, by whatever threads, and in a photon map's fingerprint; broken ones are
  * told. Flow: tests of the whole program. Threads: the program's. */
-/* ctest: long */
 #define _GNU_SOURCE
 #include "fixtures/program_textures.h"
 #include "fixtures/tiled_tiff.h"

@@ -1,6 +1,7 @@
 /* test_pbrt_materials.c: materials of several parts as the pbrt reader makes them, with pbrt's defaults: coats, diffuse
  * transmission, panes, mixes and the names these use; and what is refused.
  * Threads: one. */
+/* ctest: serial */
 #include "color/spectra.h"
 #include "fixtures/pbrt_fixture.h"
 #include "material/material_point.h"

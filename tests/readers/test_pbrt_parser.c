@@ -1,5 +1,6 @@
 /* test_pbrt_parser.c: blocks, attributes and transforms of pbrt's text, what it tells the renderer, progress; damaged
  * scenes. Threads: one. */
+/* ctest: serial */
 #define _POSIX_C_SOURCE 200809L
 #include "fixtures/pbrt_fixture.h"
 #include "fixtures/shared_folder.h"

@@ -1,6 +1,7 @@
 /* test_ply_file.c: PLY files: ascii, binary of both orders and gzip give one and the same mesh; every error by its
  * message; files cut short or damaged at every byte.
  * Threads: one. */
+/* ctest: serial */
 #define _POSIX_C_SOURCE 200809L
 #include "fixtures/ply_fixture.h"
 #include "fixtures/sanitizer.h"

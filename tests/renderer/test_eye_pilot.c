@@ -1,6 +1,5 @@
 /* test_eye_pilot.c: where importons of the eye's pilot say that light goes on to where it is asked for: a closed box
  * against its geometric series, the ground before a window, the outer side of a curtain. Threads: two workers. */
-/* ctest: long */
 #include "integrator/eye_pilot.h"
 
 #include "fixtures/test_scene.h"

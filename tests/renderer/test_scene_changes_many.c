@@ -1,5 +1,4 @@
 /* test_scene_changes_many.c: ten thousand changes of a scene, each committed and rendered, leave no memory behind.
- * ctest: long
  * Threads: one. */
 #define _GNU_SOURCE
 #include "fixtures/changing_scene.h"

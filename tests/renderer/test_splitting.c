@@ -1,7 +1,6 @@
 /* test_splitting.c: how many gather rays and light samples blocks of pixels choose: the best numbers in closed form
  * where variances and costs are known; the expectation stays; the picture is the same for any number of threads,
  * however the work is cut into passes, and in crops; and the choice pays. Threads: the renderer's. */
-/* ctest: long */
 #define _GNU_SOURCE
 #include "film/film.h"
 #include "fixtures/layers_fixture.h"

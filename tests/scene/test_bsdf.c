@@ -1,5 +1,6 @@
 /* test_bsdf.c: scattering: white furnaces, the closed forms of Fresnel and Snell, shading normals. What holds for every
  * material alike is in test_bsdf_table.c. Threads: one. */
+/* ctest: serial */
 #include "fixtures/bsdf_fixture.h"
 
 #include "material/lambert.h"

@@ -1,7 +1,7 @@
 /* test_bsdf_lobes.c: scattering by materials of several lobes: diffuse transmission, coats and panes. Energy and
  * closed forms. See test_bsdf_table.c too.
  * Threads: one. */
-/* ctest: long */
+/* ctest: serial */
 #include "fixtures/bsdf_fixture.h"
 #include "material/fresnel.h"
 #include "material/microfacet.h"

@@ -3,6 +3,7 @@
  * the value. Some rows come from scene text, with the position of a hit: mixes, textures, alpha, interfaces. Rests on:
  * Veach, "Robust Monte Carlo Methods for Light Transport Simulation", 1997, 5.2 (reciprocity where light is bent).
  * Threads: one. */
+/* ctest: serial */
 #include "fixtures/bsdf_fixture.h"
 #include "material/principled.h"
 

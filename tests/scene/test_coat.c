@@ -1,7 +1,7 @@
 /* test_coat.c: coats as pbrt-v4 makes them. Its figures: albedo under an even sky, and pictures of a sphere under a
  * distant light and a lamp, measured with its LayeredBxDF (commit 5f7a606, 512 samples a pixel, within 0.003). Threads:
  * one. */
-/* ctest: long */
+/* ctest: serial */
 #include "fixtures/bsdf_fixture.h"
 #include "fixtures/layered_walk.h"
 

@@ -1,5 +1,6 @@
 /* test_environment.c: pictures of the sphere: where their pixels lie, how they are sampled, and the photons they send.
  * Directions of octahedral pictures are those of pbrt-v4, of latitude-longitude ones those of pbrt-v3. Threads: one. */
+/* ctest: serial */
 #include "fixtures/test_scene.h"
 #include "light/environment.h"
 

@@ -1,5 +1,6 @@
 /* test_instance.c: hits on instances, at rest and moving, against the same shapes moved by hand; starts that do not
  * meet their own surface, far away and under any affine map. Threads: the build's. */
+/* ctest: serial */
 #include "fixtures/test_scene.h"
 
 #include "material/bsdf.h"

@@ -1,5 +1,6 @@
 /* test_light_area.c: light from lamps with extent is sampled towards a point with the density that is said.
  * Threads: one. */
+/* ctest: serial */
 #include "fixtures/test_scene.h"
 
 enum { SAMPLES = 100000 / FEWER };

@@ -1,5 +1,6 @@
 /* test_light_pick.c: which light is sampled: probabilities are those said and sum to 1, lights that shine at a point
  * are never left out, and many lamps' light is found with little noise. Threads: one. */
+/* ctest: serial */
 #include "fixtures/test_scene.h"
 
 #include "light/light_tree.h"

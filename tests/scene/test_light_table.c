@@ -2,6 +2,7 @@
  * says, bring the radiance that is seen there, and a ray that way has the same density; photons carry the light's
  * power, as much through a disc as direct light says (which is how the two ways of transport agree), aimed and unaimed;
  * those of points go by intensity. Threads: one. */
+/* ctest: serial */
 #include "fixtures/light_fixture.h"
 
 enum { SAMPLES = 16000 / FEWER };

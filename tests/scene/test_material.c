@@ -1,6 +1,5 @@
 /* test_material.c: what is known of materials without a bsdf: which of two a mix picks at a point, and whether they
  * have lobes that are traced. Threads: one. */
-/* ctest: long */
 #include "fixtures/bsdf_fixture.h"
 
 enum { SAMPLES = 60000 / FEWER };

@@ -1,5 +1,6 @@
 /* test_portal.c: infinite light through a window: what a point sees, with which density it is sampled, and the photons
  * that enter. Threads: one. */
+/* ctest: serial */
 #include "fixtures/light_fixture.h"
 
 enum { SAMPLES = 24000 / (FEWER > 1 ? 4 : 1) };

@@ -1,5 +1,6 @@
 /* test_quadric.c: spheres, cylinders and disks, whole and in part: areas, bounds, what rays meet, (u, v), samples,
  * shadows. Threads: one. */
+/* ctest: serial */
 #include "fixtures/test_scene.h"
 #include "math/angle.h"
 

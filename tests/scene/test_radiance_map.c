@@ -1,5 +1,6 @@
 /* test_radiance_map.c: lamps with a texture: their power, the density with which their light is sampled, and the
  * photons they send. Threads: one. */
+/* ctest: serial */
 #include "fixtures/light_fixture.h"
 
 #include "light/radiance_map.h"

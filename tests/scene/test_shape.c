@@ -1,5 +1,6 @@
 /* test_shape.c: areas, bounds, samples, normals and intersections of meshes, spheres, ellipsoids and disks.
  * Threads: one. */
+/* ctest: serial */
 #include "fixtures/test_scene.h"
 
 #define LAMP "AreaLightSource \"diffuse\" "

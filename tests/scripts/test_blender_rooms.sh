@@ -4,7 +4,7 @@
 # the material is not quite Blender's, 12 % for FBX and Collada. Collada's are held
 # against surfaces with the specular and roughness of Blender's new materials, since Blender leaves out both. A warning names
 # what a format leaves out. Skipped where Blender (with numpy, for its glTF exporter) is not installed.
-# ctest: blender long
+# ctest: blender
 set -euo pipefail
 # shellcheck source=tests/fixtures/shell_test.sh
 source "$(dirname "${BASH_SOURCE[0]}")/../fixtures/shell_test.sh"

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # --serve: a page in a browser. Who may not ask is refused; the picture, its layers and the file are the same; the file has
 # the bits of one that nobody watched; who takes nothing, or sends anything, does no harm.
-# ctest: sanitize long
+# ctest: sanitize
 set -euo pipefail
 # shellcheck source=tests/fixtures/shell_test.sh
 source "$(dirname "${BASH_SOURCE[0]}")/../fixtures/shell_test.sh"
