@@ -119,9 +119,7 @@ ag_status ag_rendering_write_checkpoint(const ag_rendering *r, const char *path)
     pieces[count++] = (atomic_file_piece){&crc, sizeof crc};
 
     char message[1024];
-    atomic_file_wait_within(&r->context->run);
-    ag_status status = atomic_file_write_pieces(path, pieces, count, message, sizeof message);
-    atomic_file_wait_within(NULL);
+    ag_status status = atomic_file_write_pieces(&r->context->run, path, pieces, count, message, sizeof message);
     if (status != AG_OK && status != AG_CANCELLED)
         log_message(r->context->log, AG_LOG_ERROR, "%s", message);
     free(words);

@@ -208,7 +208,8 @@ static ag_status write_file(const map_request *r, const photon_map *global, cons
 {
     char message[1024];
     write_job job = {r, global, caustic};
-    ag_status status = atomic_file_write_by(r->settings->photon_map_file, fill, &job, message, sizeof message);
+    ag_status status =
+        atomic_file_write_by(&r->context->run, r->settings->photon_map_file, fill, &job, message, sizeof message);
     if (status != AG_OK && run_is_cancelled(&r->context->run))
         return AG_CANCELLED;
     if (status != AG_OK)

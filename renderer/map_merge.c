@@ -174,9 +174,7 @@ static ag_status write_map(ag_context *context, const char *path, const read_map
 {
     char message[1024];
     write_job job = {context, map};
-    atomic_file_wait_within(&context->run);
-    ag_status status = atomic_file_write_by(path, fill, &job, message, sizeof message);
-    atomic_file_wait_within(NULL);
+    ag_status status = atomic_file_write_by(&context->run, path, fill, &job, message, sizeof message);
     if (status == AG_OK)
         return AG_OK;
     if (run_is_cancelled(&context->run))

@@ -374,9 +374,8 @@ ag_status ag_rendering_write_photons(const ag_rendering *r, const char *path)
     }
     char message[1024] = "";
     phase_begin begin = context_begin_phase();
-    atomic_file_wait_within(&r->context->run);
-    ag_status status = photon_dump_write(&r->maps->global, &r->maps->caustic, path, message, sizeof message);
-    atomic_file_wait_within(NULL);
+    ag_status status =
+        photon_dump_write(&r->context->run, &r->maps->global, &r->maps->caustic, path, message, sizeof message);
     context_add_to_phase(r->context, AG_PHASE_WRITE, begin);
     if (message[0] && status != AG_CANCELLED)
         log_message(r->context->log, AG_LOG_ERROR, "%s", message);

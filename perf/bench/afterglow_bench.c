@@ -47,7 +47,7 @@ static bool check_paths(const bench_options *o)
 static bool write_file(const char *path, const char *text)
 {
     char message[1024] = "";
-    if (text && atomic_file_write(path, text, strlen(text), message, sizeof message) == AG_OK)
+    if (text && atomic_file_write(NULL, path, text, strlen(text), message, sizeof message) == AG_OK)
         return true;
     fail(text ? message : "out of memory");
     return false;

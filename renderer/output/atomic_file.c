@@ -31,16 +31,12 @@ enum { LOOK_UP_EVERY_MS = 20 }; /* while a reader is waited for */
 
 static atomic_u32 no_more_waits; /* stands alone, so relaxed */
 
-static _Thread_local const run_context *waits_within; /* NULL: waits end by no_more_waits alone */
-
-void atomic_file_wait_within(const run_context *run) { waits_within = run; }
-
-/* 0: a reader may be waited for; else the errno that says why not. */
-static int end_of_waits(void)
+/* 0: a reader may be waited for; else the errno that says why not. run: NULL, or what may be cancelled. */
+static int end_of_waits(const run_context *run)
 {
     if (load_relaxed_u32(&no_more_waits))
         return EINTR;
-    return waits_within && run_is_cancelled(waits_within) ? ECANCELED : 0;
+    return run && run_is_cancelled(run) ? ECANCELED : 0;
 }
 
 void atomic_file_end_waits(void) { store_relaxed_u32(&no_more_waits, 1); }
@@ -69,7 +65,7 @@ static ag_status failure(const char *path, const char *what, int error, char *me
 {
     char text[128];
     snprintf(message, message_size, "cannot write '%s': %s%s", path, what, strerror_r(error, text, sizeof text));
-    return error == ECANCELED && waits_within ? AG_CANCELLED : AG_ERROR_OUTPUT;
+    return error == ECANCELED ? AG_CANCELLED : AG_ERROR_OUTPUT;
 }
 
 static int close_quietly(int fd)
@@ -81,14 +77,14 @@ static int close_quietly(int fd)
 }
 
 /* Opens what is no regular file, without waiting in open itself, which no signal would end. */
-static int open_special(const char *path)
+static int open_special(const run_context *run, const char *path)
 {
     for (;;) {
         int fd = descriptor_beyond_standard(open(path, O_WRONLY | O_CLOEXEC | O_NOCTTY | O_NONBLOCK));
         if (fd >= 0 || errno != ENXIO) /* ENXIO: a FIFO that nobody reads, or a device that is not there */
             return fd;
         struct stat status;
-        const int end = end_of_waits();
+        const int end = end_of_waits(run);
         if (end != 0 || stat(path, &status) != 0 || !S_ISFIFO(status.st_mode)) {
             errno = end == ECANCELED ? end : ENXIO;
             return -1;
@@ -99,7 +95,7 @@ static int open_special(const char *path)
 }
 
 /* Waits until a pipe or device takes something. 0, or an errno. */
-static int wait_until_writable(int fd)
+static int wait_until_writable(const run_context *run, int fd)
 {
     for (;;) {
         struct pollfd at = {.fd = fd, .events = POLLOUT};
@@ -108,8 +104,9 @@ static int wait_until_writable(int fd)
             return 0; /* where there is an error, write says which */
         if (ready < 0 && errno != EINTR)
             return errno;
-        if (end_of_waits() != 0)
-            return end_of_waits();
+        const int end = end_of_waits(run);
+        if (end != 0)
+            return end;
     }
 }
 
@@ -302,7 +299,7 @@ static void abandon(output *out)
 }
 
 /* Opens what path stands for; *out is to be finished or abandoned only after AG_OK. */
-static ag_status begin(const char *path, output *out, char *message, size_t message_size)
+static ag_status begin(const run_context *run, const char *path, output *out, char *message, size_t message_size)
 {
     char resolved[PATH_MAX];
     struct stat status;
@@ -323,7 +320,7 @@ static ag_status begin(const char *path, output *out, char *message, size_t mess
     if (exists && S_ISDIR(status.st_mode))
         return failure(path, "", EISDIR, message, message_size);
     if (exists && !S_ISREG(status.st_mode)) {
-        out->fd = open_special(resolved);
+        out->fd = open_special(run, resolved);
         return out->fd >= 0 ? AG_OK : failure(path, "", errno, message, message_size);
     }
     if (!exists && errno != ENOENT && errno != ENOTDIR && errno != EACCES)
@@ -364,13 +361,13 @@ static ag_status begin(const char *path, output *out, char *message, size_t mess
     return AG_OK;
 }
 
-static int write_all(int fd, const void *bytes, size_t size)
+static int write_all(const run_context *run, int fd, const void *bytes, size_t size)
 {
     const char *next = bytes;
     struct stat status;
     const bool may_wait = fstat(fd, &status) == 0 && !S_ISREG(status.st_mode);
     while (size > 0) {
-        const int error = may_wait ? wait_until_writable(fd) : 0;
+        const int error = may_wait ? wait_until_writable(run, fd) : 0;
         if (error != 0)
             return error;
         /* what poll promises fits at least PIPE_BUF bytes, also where the descriptor would wait for more */
@@ -386,6 +383,7 @@ static int write_all(int fd, const void *bytes, size_t size)
 }
 
 typedef struct piece_list {
+    const run_context *run;
     const atomic_file_piece *pieces;
     int count;
 } piece_list;
@@ -395,7 +393,7 @@ static int write_pieces(void *user, int fd)
     const piece_list *all = user;
     int error = 0;
     for (int i = 0; i < all->count && error == 0; i++)
-        error = write_all(fd, all->pieces[i].bytes, all->pieces[i].size);
+        error = write_all(all->run, fd, all->pieces[i].bytes, all->pieces[i].size);
     return error;
 }
 
@@ -423,24 +421,26 @@ static int fill_and_rename(output *out, atomic_file_fill *fill, void *user)
     return renamed;
 }
 
-ag_status atomic_file_write(const char *path, const void *bytes, size_t size, char *message, size_t message_size)
+ag_status atomic_file_write(const run_context *run, const char *path, const void *bytes, size_t size, char *message,
+                            size_t message_size)
 {
     const atomic_file_piece whole = {bytes, size};
-    return atomic_file_write_pieces(path, &whole, 1, message, message_size);
+    return atomic_file_write_pieces(run, path, &whole, 1, message, message_size);
 }
 
-ag_status atomic_file_write_pieces(const char *path, const atomic_file_piece *pieces, int count, char *message,
-                                   size_t message_size)
+ag_status atomic_file_write_pieces(const run_context *run, const char *path, const atomic_file_piece *pieces, int count,
+                                   char *message, size_t message_size)
 {
-    piece_list all = {pieces, count};
-    return atomic_file_write_by(path, write_pieces, &all, message, message_size);
+    piece_list all = {run, pieces, count};
+    return atomic_file_write_by(run, path, write_pieces, &all, message, message_size);
 }
 
-ag_status atomic_file_write_by(const char *path, atomic_file_fill *fill, void *user, char *message, size_t message_size)
+ag_status atomic_file_write_by(const run_context *run, const char *path, atomic_file_fill *fill, void *user,
+                               char *message, size_t message_size)
 {
     output out;
     snprintf(message, message_size, "%s", "");
-    AG_TRY(begin(path, &out, message, message_size));
+    AG_TRY(begin(run, path, &out, message, message_size));
     ag_status status = AG_OK;
     if (fill_and_rename(&out, fill, user) != 0) {
         const int error = errno;
@@ -470,7 +470,7 @@ ag_status atomic_file_check(const char *path, char *message, size_t message_size
         return faccessat(AT_FDCWD, resolved, W_OK, AT_EACCESS) == 0 ? AG_OK
                                                                     : failure(path, "", errno, message, message_size);
     output out;
-    const ag_status result = begin(path, &out, message, message_size);
+    const ag_status result = begin(NULL, path, &out, message, message_size);
     if (result == AG_OK)
         abandon(&out);
     return result;

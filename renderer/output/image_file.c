@@ -127,8 +127,8 @@ static bool needs_module(const image_format *format)
     return strcmp(format->extension, "exr") != 0 && strcmp(format->extension, "pfm") != 0;
 }
 
-ag_status image_file_write(const char *path, const image_description *description, const float *pixels, char *message,
-                           size_t message_size)
+ag_status image_file_write(const run_context *run, const char *path, const image_description *description,
+                           const float *pixels, char *message, size_t message_size)
 {
     snprintf(message, message_size, "%s", "");
     const image_format *format = image_format_of(path);
@@ -150,7 +150,7 @@ ag_status image_file_write(const char *path, const image_description *descriptio
     else
         status = encode_pfm(description, pixels, &bytes, &size);
     if (status == AG_OK)
-        status = atomic_file_write(path, bytes, size, message, message_size);
+        status = atomic_file_write(run, path, bytes, size, message, message_size);
     else
         snprintf(message, message_size, "cannot write '%s': %s", path, reason);
     free(bytes);

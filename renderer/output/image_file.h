@@ -7,6 +7,7 @@
 
 #include "afterglow/base.h"
 #include "image/image.h"
+#include "run_context.h"
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -33,10 +34,11 @@ bool image_format_can_hold(const image_format *format, image_sample_type type);
  * target is as it was and nothing is left beside it. Half values are clamped to +-65504. Non-finite values must have
  * been replaced by the caller. DateTime is set from the attributes or left out, so equal pictures give equal files.
  * JPEG keeps the first three channels, and the attributes up to 16 KiB of text. A path that is a symbolic link writes
- * what it points to; one that is no regular file (a FIFO, a device, /dev/stdout) is written directly.
- * Errors: AG_ERROR_OUTPUT, AG_ERROR_SYSTEM (the module cannot be opened), AG_ERROR_MEMORY; text in message. */
-ag_status image_file_write(const char *path, const image_description *description, const float *pixels, char *message,
-                           size_t message_size);
+ * what it points to; one that is no regular file (a FIFO, a device, /dev/stdout) is written directly, and waited for
+ * until run is cancelled; NULL: for as long as it takes. Errors: AG_ERROR_OUTPUT, AG_ERROR_SYSTEM (the module cannot be
+ * opened), AG_ERROR_MEMORY, AG_CANCELLED; text in message. */
+ag_status image_file_write(const run_context *run, const char *path, const image_description *description,
+                           const float *pixels, char *message, size_t message_size);
 
 /* Whether a file could be created at path now: the extension is known, its folder exists and may be written, it is no
  * folder itself, the module can be opened where the format needs it. Called before a long render. Errors:

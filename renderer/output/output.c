@@ -157,9 +157,7 @@ static ag_status write_picture(ag_context *context, const ag_film *film, const a
         pixels = layers.pixels;
     }
     char message[MESSAGE_SIZE];
-    atomic_file_wait_within(&context->run);
-    const ag_status status = image_file_write(path, &description, pixels, message, sizeof message);
-    atomic_file_wait_within(NULL);
+    const ag_status status = image_file_write(&context->run, path, &description, pixels, message, sizeof message);
     if (status != AG_OK && status != AG_CANCELLED)
         log_message(context->log, AG_LOG_ERROR, "%s", message);
     picture_layers_reset(&layers);

@@ -44,8 +44,8 @@ static unsigned char *write_map(const photon_map *map, unsigned char kind, unsig
     return at;
 }
 
-ag_status photon_dump_write(const photon_map *global, const photon_map *caustic, const char *path, char *message,
-                            size_t message_size)
+ag_status photon_dump_write(const run_context *run, const photon_map *global, const photon_map *caustic,
+                            const char *path, char *message, size_t message_size)
 {
     static const char *const names[FLOATS] = {"x",  "y",  "z",  "nx",  "ny",    "nz",
                                               "dx", "dy", "dz", "red", "green", "blue"};
@@ -64,7 +64,7 @@ ag_status photon_dump_write(const photon_map *global, const photon_map *caustic,
                        "property uchar caustic\nproperty uchar demanded\nend_header\n");
     unsigned char *at = write_map(global, 0, bytes + length);
     at = write_map(caustic, 1, at);
-    ag_status status = atomic_file_write(path, bytes, (size_t)(at - bytes), message, message_size);
+    ag_status status = atomic_file_write(run, path, bytes, (size_t)(at - bytes), message, message_size);
     free(bytes);
     return status;
 }

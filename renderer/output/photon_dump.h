@@ -5,8 +5,9 @@
 
 #include "photon_map.h"
 
-/* See ag_rendering_write_photons. Errors: AG_ERROR_MEMORY, AG_ERROR_OUTPUT (with text in message). */
-ag_status photon_dump_write(const photon_map *global, const photon_map *caustic, const char *path, char *message,
-                            size_t message_size);
+/* See ag_rendering_write_photons. Errors: AG_ERROR_MEMORY, AG_ERROR_OUTPUT (with text in message), AG_CANCELLED (run
+ * is, while a reader is waited for). */
+ag_status photon_dump_write(const run_context *run, const photon_map *global, const photon_map *caustic,
+                            const char *path, char *message, size_t message_size);
 
 #endif

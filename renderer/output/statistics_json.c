@@ -175,9 +175,7 @@ ag_status ag_statistics_write(ag_context *context, const char *path)
     size_t length = strlen(text);
     text[length] = '\n'; /* instead of the terminator: the file needs none */
     char message[1024];
-    atomic_file_wait_within(&context->run);
-    ag_status status = atomic_file_write(path, text, length + 1, message, sizeof message);
-    atomic_file_wait_within(NULL);
+    ag_status status = atomic_file_write(&context->run, path, text, length + 1, message, sizeof message);
     if (status != AG_OK && status != AG_CANCELLED)
         log_message(context->log, AG_LOG_ERROR, "%s", message);
     free(text);

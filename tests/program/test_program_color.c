@@ -145,7 +145,7 @@ static void write_picture(const char *name, image_sample_type type, const float 
                                            .type = type,
                                            .attributes = &attribute,
                                            .attribute_count = chromaticities ? 1 : 0};
-    if (image_file_write(in_folder(name), &description, pixels, message, sizeof message) != AG_OK)
+    if (image_file_write(NULL, in_folder(name), &description, pixels, message, sizeof message) != AG_OK)
         fail_msg("%s", message);
 }
 

@@ -140,7 +140,7 @@ static void samplers_and_transforms(void **state)
         {"'wrapS': 33071, 'wrapT': 33071", "'offset': [0, 1], 'rotation': 1.57079632679", 0.25f, 0.75f, 0.8},
     };
     write_triangle();
-    if (image_file_write(in_folder("q.png"), &description, pixels, message, sizeof message) != AG_OK)
+    if (image_file_write(NULL, in_folder("q.png"), &description, pixels, message, sizeof message) != AG_OK)
         fail_msg("%s", message);
     for (size_t i = 0; i < sizeof LOOKUPS / sizeof *LOOKUPS; i++) {
         char others[512], info[512];

@@ -35,7 +35,7 @@ static void write_picture(const char *name, int channel_count)
                                            .channel_count = channel_count,
                                            .channel_names = CHANNELS,
                                            .type = IMAGE_FLOAT};
-    if (image_file_write(in_folder(name), &description, pixels, message, sizeof message) != AG_OK)
+    if (image_file_write(NULL, in_folder(name), &description, pixels, message, sizeof message) != AG_OK)
         fail_msg("%s", message);
 }
 

@@ -159,7 +159,7 @@ static void normal_maps(void **state)
                                            .channel_names = Y,
                                            .type = IMAGE_UINT8};
     const char *grey = in_folder("grey.png");
-    if (image_file_write(grey, &description, GREY, message, sizeof message) != AG_OK)
+    if (image_file_write(NULL, grey, &description, GREY, message, sizeof message) != AG_OK)
         fail_msg("%s", message);
     snprintf(text, sizeof text, "Material \"diffuse\" \"string normalmap\" \"%s\"", grey);
     refuses(text, "is no normal map: it has no red, green and blue");

@@ -97,7 +97,7 @@ static void bad_values_are_told(void **state)
 
 static void write_parts(const char *name, const image_description *description, const float *pixels)
 {
-    if (image_file_write(in_folder(name), description, pixels, message, sizeof message) != AG_OK)
+    if (image_file_write(NULL, in_folder(name), description, pixels, message, sizeof message) != AG_OK)
         fail_msg("%s", message);
 }
 

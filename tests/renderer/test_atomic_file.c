@@ -17,18 +17,18 @@ static void modes_of_new_and_old_files(void **state)
     (void)state;
     struct stat status;
     const mode_t saved = umask(022);
-    assert_int_equal(atomic_file_write(in_folder("a"), "1", 1, message, sizeof message), AG_OK);
+    assert_int_equal(atomic_file_write(NULL, in_folder("a"), "1", 1, message, sizeof message), AG_OK);
     umask(077);
-    assert_int_equal(atomic_file_write(in_folder("b"), "2", 1, message, sizeof message), AG_OK);
+    assert_int_equal(atomic_file_write(NULL, in_folder("b"), "2", 1, message, sizeof message), AG_OK);
     assert_int_equal(chmod(in_folder("a"), 0640), 0);
     assert_int_equal(stat(in_folder("b"), &status), 0);
     assert_int_equal(status.st_mode & 0777, 0600);
-    assert_int_equal(atomic_file_write(in_folder("a"), "three", 5, message, sizeof message), AG_OK);
+    assert_int_equal(atomic_file_write(NULL, in_folder("a"), "three", 5, message, sizeof message), AG_OK);
     umask(saved);
     assert_int_equal(stat(in_folder("a"), &status), 0);
     assert_int_equal(status.st_mode & 0777, 0640);
     expect_text(in_folder("a"), "three");
-    assert_int_equal(atomic_file_write(in_folder("c"), "", 0, message, sizeof message), AG_OK);
+    assert_int_equal(atomic_file_write(NULL, in_folder("c"), "", 0, message, sizeof message), AG_OK);
     expect_text(in_folder("c"), "");
     assert_int_equal(entry_count(), 3);
 }
@@ -40,10 +40,10 @@ static void names_as_long_as_they_may_be(void **state)
     memset(name, 'n', sizeof name);
     char path[512];
     snprintf(path, sizeof path, "%s/%.255s", folder, name);
-    assert_int_equal(atomic_file_write(path, "1", 1, message, sizeof message), AG_OK);
+    assert_int_equal(atomic_file_write(NULL, path, "1", 1, message, sizeof message), AG_OK);
     expect_text(path, "1");
     snprintf(path, sizeof path, "%s/%.256s", folder, name);
-    expect_failure(atomic_file_write(path, "1", 1, message, sizeof message), AG_ERROR_OUTPUT, "too long");
+    expect_failure(atomic_file_write(NULL, path, "1", 1, message, sizeof message), AG_ERROR_OUTPUT, "too long");
     assert_int_equal(entry_count(), 1);
 }
 
@@ -51,18 +51,19 @@ static void links_stay_links(void **state)
 {
     (void)state;
     struct stat status;
-    assert_int_equal(atomic_file_write(in_folder("real"), "old", 3, message, sizeof message), AG_OK);
+    assert_int_equal(atomic_file_write(NULL, in_folder("real"), "old", 3, message, sizeof message), AG_OK);
     assert_int_equal(symlink("real", in_folder("link")), 0);
     assert_int_equal(symlink("link", in_folder("link_to_link")), 0);
     assert_int_equal(symlink(in_folder("later"), in_folder("dangling")), 0);
     assert_int_equal(symlink("loop", in_folder("loop")), 0);
-    assert_int_equal(atomic_file_write(in_folder("link_to_link"), "new", 3, message, sizeof message), AG_OK);
-    assert_int_equal(atomic_file_write(in_folder("dangling"), "made", 4, message, sizeof message), AG_OK);
+    assert_int_equal(atomic_file_write(NULL, in_folder("link_to_link"), "new", 3, message, sizeof message), AG_OK);
+    assert_int_equal(atomic_file_write(NULL, in_folder("dangling"), "made", 4, message, sizeof message), AG_OK);
     expect_text(in_folder("real"), "new");
     expect_text(in_folder("later"), "made");
     assert_true(lstat(in_folder("link"), &status) == 0 && S_ISLNK(status.st_mode));
     assert_true(lstat(in_folder("dangling"), &status) == 0 && S_ISLNK(status.st_mode));
-    expect_failure(atomic_file_write(in_folder("loop"), "x", 1, message, sizeof message), AG_ERROR_OUTPUT, "links");
+    expect_failure(atomic_file_write(NULL, in_folder("loop"), "x", 1, message, sizeof message), AG_ERROR_OUTPUT,
+                   "links");
     assert_int_equal(entry_count(), 6);
 }
 
@@ -71,14 +72,14 @@ static void special_targets_are_written_directly(void **state)
     (void)state;
     char buffer[64], path[64];
     struct stat status;
-    assert_int_equal(atomic_file_write("/dev/null", "x", 1, message, sizeof message), AG_OK);
+    assert_int_equal(atomic_file_write(NULL, "/dev/null", "x", 1, message, sizeof message), AG_OK);
     assert_true(stat("/dev/null", &status) == 0 && S_ISCHR(status.st_mode));
 
     assert_int_equal(mkfifo(in_folder("fifo"), 0600), 0);
     assert_int_equal(atomic_file_check(in_folder("fifo"), message, sizeof message), AG_OK); /* does not wait */
     const int reader = open(in_folder("fifo"), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
     assert_true(reader >= 0);
-    assert_int_equal(atomic_file_write(in_folder("fifo"), "through", 7, message, sizeof message), AG_OK);
+    assert_int_equal(atomic_file_write(NULL, in_folder("fifo"), "through", 7, message, sizeof message), AG_OK);
     assert_int_equal(read(reader, buffer, sizeof buffer), 7);
     assert_memory_equal(buffer, "through", 7);
     close(reader);
@@ -89,11 +90,11 @@ static void special_targets_are_written_directly(void **state)
     assert_int_equal(write(fd, "one ", 4), 4);
     snprintf(path, sizeof path, "/dev/fd/%d", fd);
     assert_int_equal(atomic_file_check(path, message, sizeof message), AG_OK);
-    assert_int_equal(atomic_file_write(path, "two", 3, message, sizeof message), AG_OK);
+    assert_int_equal(atomic_file_write(NULL, path, "two", 3, message, sizeof message), AG_OK);
     assert_int_equal(write(fd, " three", 6), 6);
     close(fd);
     expect_text(in_folder("log"), "one two three");
-    expect_failure(atomic_file_write(path, "x", 1, message, sizeof message), AG_ERROR_OUTPUT, path);
+    expect_failure(atomic_file_write(NULL, path, "x", 1, message, sizeof message), AG_ERROR_OUTPUT, path);
 }
 
 static void remove_pending_and_end(int signal_number)
@@ -107,13 +108,13 @@ static void a_signal_leaves_nothing_behind(void **state)
 {
     (void)state;
     static char bytes[20000];
-    assert_int_equal(atomic_file_write(in_folder("x"), "as before", 9, message, sizeof message), AG_OK);
+    assert_int_equal(atomic_file_write(NULL, in_folder("x"), "as before", 9, message, sizeof message), AG_OK);
     const pid_t child = fork();
     if (child == 0) { /* SIGXFSZ arrives in the middle of the write */
         struct rlimit saved;
         signal(SIGXFSZ, remove_pending_and_end);
         set_file_limit(4096, &saved);
-        atomic_file_write(in_folder("x"), bytes, sizeof bytes, message, sizeof message);
+        atomic_file_write(NULL, in_folder("x"), bytes, sizeof bytes, message, sizeof message);
         _exit(1);
     }
     int status = 0;
@@ -129,13 +130,13 @@ static void a_signal_leaves_nothing_behind(void **state)
 static void files_that_must_not_be_written(void **state)
 {
     (void)state;
-    assert_int_equal(atomic_file_write(in_folder("x"), "as before", 9, message, sizeof message), AG_OK);
+    assert_int_equal(atomic_file_write(NULL, in_folder("x"), "as before", 9, message, sizeof message), AG_OK);
     assert_int_equal(chmod(in_folder("x"), 0444), 0);
     assert_int_equal(chmod(folder, 0777), 0); /* so that only the file stands in the way */
     const bool root = geteuid() == 0;
     if (root)
         assert_int_equal(seteuid(NOBODY), 0);
-    const ag_status status = atomic_file_write(in_folder("x"), "changed", 7, message, sizeof message);
+    const ag_status status = atomic_file_write(NULL, in_folder("x"), "changed", 7, message, sizeof message);
     if (root)
         assert_int_equal(seteuid(0), 0);
     expect_failure(status, AG_ERROR_OUTPUT, "Permission denied");
@@ -154,7 +155,7 @@ static void targets_are_checked_beforehand(void **state)
     expect_failure(atomic_file_check("", message, sizeof message), AG_ERROR_OUTPUT, "No such file");
     assert_int_equal(atomic_file_check(in_folder("x"), message, sizeof message), AG_OK);
     assert_int_equal(entry_count(), 1);
-    assert_int_equal(atomic_file_write(in_folder("x"), "as before", 9, message, sizeof message), AG_OK);
+    assert_int_equal(atomic_file_write(NULL, in_folder("x"), "as before", 9, message, sizeof message), AG_OK);
     assert_int_equal(atomic_file_check(in_folder("x"), message, sizeof message), AG_OK);
     expect_failure(atomic_file_check(in_folder("x/y"), message, sizeof message), AG_ERROR_OUTPUT, "Not a directory");
     expect_text(in_folder("x"), "as before");
@@ -168,7 +169,7 @@ static void bare_names(void **state)
     char saved[4096];
     assert_non_null(getcwd(saved, sizeof saved));
     assert_int_equal(chdir(folder), 0);
-    const ag_status status = atomic_file_write("bare", "1", 1, message, sizeof message);
+    const ag_status status = atomic_file_write(NULL, "bare", "1", 1, message, sizeof message);
     assert_int_equal(chdir(saved), 0);
     assert_int_equal(status, AG_OK);
     expect_text(in_folder("bare"), "1");
@@ -195,7 +196,7 @@ static pid_t start_writer(const char *path, int ends[4])
     const pid_t child = fork();
     assert_true(child >= 0);
     if (child == 0)
-        _exit(atomic_file_write_by(path, write_half_and_wait, ends, message, sizeof message) == AG_OK ? 0 : 1);
+        _exit(atomic_file_write_by(NULL, path, write_half_and_wait, ends, message, sizeof message) == AG_OK ? 0 : 1);
     char byte;
     assert_int_equal(read(ends[0], &byte, 1), 1);
     return child;
@@ -223,9 +224,10 @@ static void what_the_dead_have_left_is_removed(void **state)
     assert_int_equal(entry_count(), 4);
     assert_int_equal(kill(dead, SIGKILL), 0);
     assert_int_equal(waitpid(dead, &status, 0), dead);
-    assert_int_equal(atomic_file_write(other, "1", 1, message, sizeof message), AG_OK); /* another file's are left */
+    assert_int_equal(atomic_file_write(NULL, other, "1", 1, message, sizeof message),
+                     AG_OK); /* another file's are left */
     assert_int_equal(entry_count(), 5);
-    assert_int_equal(atomic_file_write(path, "1", 1, message, sizeof message), AG_OK);
+    assert_int_equal(atomic_file_write(NULL, path, "1", 1, message, sizeof message), AG_OK);
     assert_int_equal(entry_count(), 5); /* x is there, and what the dead one has left is gone */
     expect_text(path, "1");
     /* the living one still ends in order */
@@ -254,7 +256,7 @@ static void *write_often(void *user)
     char path[160], said[512];
     for (int k = 0; k < ROUNDS; k++) {
         snprintf(path, sizeof path, "%s/%s%d", folder, k % 2 ? "folder/" : "", w->number);
-        w->failed += atomic_file_write(path, "whole", 5, said, sizeof said) != AG_OK;
+        w->failed += atomic_file_write(NULL, path, "whole", 5, said, sizeof said) != AG_OK;
     }
     return NULL;
 }

@@ -40,19 +40,19 @@ static void bad_requests(void **state)
     float pixels[WIDTH * HEIGHT * 5];
     fill(pixels, 5);
     image_description description = describe(3, IMAGE_UINT8);
-    expect_failure(image_file_write(in_folder("x.gif"), &description, pixels, message, sizeof message), AG_ERROR_OUTPUT,
-                   ".exr, .hdr, .pfm, .png");
-    expect_failure(image_file_write(in_folder("x.exr"), &description, pixels, message, sizeof message), AG_ERROR_OUTPUT,
-                   "8-bit");
+    expect_failure(image_file_write(NULL, in_folder("x.gif"), &description, pixels, message, sizeof message),
+                   AG_ERROR_OUTPUT, ".exr, .hdr, .pfm, .png");
+    expect_failure(image_file_write(NULL, in_folder("x.exr"), &description, pixels, message, sizeof message),
+                   AG_ERROR_OUTPUT, "8-bit");
     description = describe(3, IMAGE_FLOAT);
-    expect_failure(image_file_write(in_folder("x.png"), &description, pixels, message, sizeof message), AG_ERROR_OUTPUT,
-                   "float");
+    expect_failure(image_file_write(NULL, in_folder("x.png"), &description, pixels, message, sizeof message),
+                   AG_ERROR_OUTPUT, "float");
     description = describe(5, IMAGE_UINT8);
-    expect_failure(image_file_write(in_folder("x.png"), &description, pixels, message, sizeof message), AG_ERROR_OUTPUT,
-                   "5 channels");
+    expect_failure(image_file_write(NULL, in_folder("x.png"), &description, pixels, message, sizeof message),
+                   AG_ERROR_OUTPUT, "5 channels");
     description = describe(3, IMAGE_UINT8);
     description.width = 0;
-    expect_failure(image_file_write(in_folder("x.png"), &description, pixels, message, sizeof message),
+    expect_failure(image_file_write(NULL, in_folder("x.png"), &description, pixels, message, sizeof message),
                    AG_ERROR_ARGUMENT, "not valid");
     assert_int_equal(entry_count(), 0);
 }
@@ -66,8 +66,8 @@ static void libjpeg_cannot_end_the_process(void **state)
     float *pixels = calloc(65501 * 3, sizeof *pixels);
     char *long_text = malloc(200001);
     assert_true(pixels && long_text);
-    expect_failure(image_file_write(in_folder("x.jpg"), &description, pixels, message, sizeof message), AG_ERROR_OUTPUT,
-                   "65500");
+    expect_failure(image_file_write(NULL, in_folder("x.jpg"), &description, pixels, message, sizeof message),
+                   AG_ERROR_OUTPUT, "65500");
     assert_int_equal(entry_count(), 0);
 
     memset(long_text, 'x', 200000);

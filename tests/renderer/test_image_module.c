@@ -49,7 +49,7 @@ static void exr_needs_no_module(void **state)
         const bool is_fine =
             image_file_check_target(in_folder("x.exr"), message, sizeof message) == AG_OK &&
             image_file_check_target(in_folder("x.pfm"), message, sizeof message) == AG_OK &&
-            image_file_write(in_folder("x.exr"), &description, pixels, message, sizeof message) == AG_OK &&
+            image_file_write(NULL, in_folder("x.exr"), &description, pixels, message, sizeof message) == AG_OK &&
             !is_loaded(IMAGE_MODULE_FILE_NAME) && !is_loaded("libOpenImageIO");
         _exit(is_fine ? 0 : 1);
     }
@@ -99,7 +99,7 @@ static void missing_module_names_the_paths(void **state)
     assert_int_equal(mkdir(in_folder("empty"), 0777), 0);
     assert_int_equal(mkdir(in_folder("broken"), 0777), 0);
     assert_int_equal(
-        atomic_file_write(in_folder("broken/" IMAGE_MODULE_FILE_NAME), "no library", 10, message, sizeof message),
+        atomic_file_write(NULL, in_folder("broken/" IMAGE_MODULE_FILE_NAME), "no library", 10, message, sizeof message),
         AG_OK);
     const char *const folders[] = {in_folder("empty"), in_folder("broken")};
     assert_null(image_module_open_from(folders, 2, message, sizeof message));

@@ -16,7 +16,7 @@ static void full_disk_through_a_device(void **state)
     for (size_t k = 0; k < 4; k++) {
         const image_description description = describe(3, image_format_of(names[k])->default_type);
         assert_int_equal(symlink("/dev/full", in_folder(names[k])), 0);
-        expect_failure(image_file_write(in_folder(names[k]), &description, pixels, message, sizeof message),
+        expect_failure(image_file_write(NULL, in_folder(names[k]), &description, pixels, message, sizeof message),
                        AG_ERROR_OUTPUT, "No space left on device");
         assert_true(lstat(in_folder(names[k]), &status) == 0 && S_ISLNK(status.st_mode));
     }
@@ -39,10 +39,11 @@ static void failed_writes_leave_all_as_it_was(void **state)
     for (size_t k = 0; k < 4; k++) {
         image_description description = describe(3, image_format_of(names[k])->default_type);
         description.width = description.height = description.full_width = description.full_height = SIDE;
-        assert_int_equal(atomic_file_write(in_folder(names[k]), "as before", 9, message, sizeof message), AG_OK);
+        assert_int_equal(atomic_file_write(NULL, in_folder(names[k]), "as before", 9, message, sizeof message), AG_OK);
         struct rlimit saved;
         set_file_limit(4096, &saved);
-        const ag_status status = image_file_write(in_folder(names[k]), &description, pixels, message, sizeof message);
+        const ag_status status =
+            image_file_write(NULL, in_folder(names[k]), &description, pixels, message, sizeof message);
         assert_int_equal(setrlimit(RLIMIT_FSIZE, &saved), 0);
         expect_failure(status, AG_ERROR_OUTPUT, "File too large");
         assert_non_null(strstr(message, names[k]));
@@ -59,12 +60,12 @@ static void folders_that_cannot_be_written(void **state)
     float pixels[WIDTH * HEIGHT * 3];
     const image_description description = describe(3, IMAGE_HALF);
     fill(pixels, 3);
-    assert_int_equal(atomic_file_write(in_folder("x.exr"), "as before", 9, message, sizeof message), AG_OK);
+    assert_int_equal(atomic_file_write(NULL, in_folder("x.exr"), "as before", 9, message, sizeof message), AG_OK);
     assert_int_equal(chmod(folder, 0555), 0);
     const bool root = geteuid() == 0; /* whom permissions do not hold back */
     if (root)
         assert_int_equal(seteuid(NOBODY), 0);
-    const ag_status written = image_file_write(in_folder("y.exr"), &description, pixels, message, sizeof message);
+    const ag_status written = image_file_write(NULL, in_folder("y.exr"), &description, pixels, message, sizeof message);
     char of_write[sizeof message];
     memcpy(of_write, message, sizeof message);
     const ag_status checked = image_file_check_target(in_folder("y.exr"), message, sizeof message);
