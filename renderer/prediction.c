@@ -306,60 +306,80 @@ static double cost_of_wanted(double tried_s, double fewer_s, double step, double
 
 static double at_most(uint64_t count, uint64_t most) { return count > most ? (double)count / (double)most : 1.0; }
 
+/* What is rendered instead of the picture. */
+typedef struct trial_plan {
+    ag_render_settings tried;
+    uint64_t wanted[2];                 /* photons of the picture's global and caustic map */
+    double global_grown, photons_grown; /* wanted photons over tried ones: of the global map, and of both together */
+} trial_plan;
+
+static trial_plan plan_trial(const scene *s, const ag_render_settings *settings)
+{
+    trial_plan plan = {
+        .tried = *settings,
+        .wanted = {settings->photon_count, maps_have_caustics(s, settings) ? settings->caustic_photon_count : 0},
+        .global_grown = at_most(settings->photon_count, TRIAL_PHOTONS)};
+    ag_render_settings *tried = &plan.tried;
+    tried->photon_count = (uint64_t)((double)plan.wanted[0] / plan.global_grown);
+    tried->caustic_photon_count = (uint64_t)((double)plan.wanted[1] / at_most(plan.wanted[1], TRIAL_PHOTONS));
+    tried->photon_map_file = NULL;
+    tried->photon_paths = 0; /* what the last frame left is for the picture itself */
+    tried->cache = settings->cache == AG_CACHE_PRECOMPUTE ? AG_CACHE_ON_DEMAND : settings->cache;
+    const double tried_photons = (double)(tried->photon_count + tried->caustic_photon_count);
+    plan.photons_grown = (double)(plan.wanted[0] + plan.wanted[1]) / fmax(tried_photons, 1.0);
+    return plan;
+}
+
+/* Predicts the time of the phases that make the maps, which the trial made between two statistics. Returns how many CPU
+ * seconds the wanted maps take more than the tried ones. */
+static double predict_maps(const ag_statistics *before, const ag_statistics *after, const fewer_photons *fewer,
+                           double photons_grown, ag_prediction *out)
+{
+    const map_cost tried = cost_since(after, before);
+    double more_cpu_s = 0.0;
+    for (int i = AG_PHASE_PHOTONS; i <= AG_PHASE_MAP; i++) {
+        const double tried_s = tried.cpu_s[i];
+        const double wanted_s = cost_of_wanted(tried_s, fewer->maps.cpu_s[i], fewer->step, photons_grown);
+        /* some of it is one thread's; what takes longer than that has waited for a processor */
+        out->time_s[i] = fmin(after->time_s[i] - before->time_s[i], tried_s);
+        out->time_s[i] *= tried_s > 0.0 ? wanted_s / tried_s : 1.0;
+        more_cpu_s += wanted_s - tried_s;
+    }
+    return more_cpu_s;
+}
+
 static ag_status predict_time(ag_context *context, const ag_scene *loaded, const ag_render_settings *settings,
                               int channel_count, ag_prediction *out)
 {
-    ag_render_settings tried = *settings;
-    const double global_grown = at_most(settings->photon_count, TRIAL_PHOTONS);
-    const uint64_t caustic_count = maps_have_caustics(loaded->s, settings) ? settings->caustic_photon_count : 0;
-    const double caustic_grown = at_most(caustic_count, TRIAL_PHOTONS);
-    tried.photon_count = (uint64_t)((double)settings->photon_count / global_grown);
-    tried.caustic_photon_count = (uint64_t)((double)caustic_count / caustic_grown);
-    tried.photon_map_file = NULL;
-    tried.photon_paths = 0; /* what the last frame left is for the picture itself */
-    tried.cache = settings->cache == AG_CACHE_PRECOMPUTE ? AG_CACHE_ON_DEMAND : settings->cache;
+    const trial_plan plan = plan_trial(loaded->s, settings);
     fewer_photons fewer = {.step = HUGE_VAL};
     if (integrator_of(settings->integrator)->has_photon_map)
-        fewer = measure_fewer(context, loaded, (const uint64_t[2]){settings->photon_count, caustic_count}, &tried);
-    const ag_statistics before = context->statistics;
+        fewer = measure_fewer(context, loaded, plan.wanted, &plan.tried);
+
+    const ag_statistics before = context->statistics, *after = &context->statistics;
     ag_rendering *r;
     trial pilot = {0}, trials[2] = {0};
-    double precompute_cpu_s;
-    ag_status status = ag_rendering_create(context, loaded, &tried, &r);
-    if (status != AG_OK)
-        return status;
-    const ag_statistics *s = &context->statistics;
-    const double threads = s->threads,
-                 preparing = s->phase_cpu_s[AG_PHASE_RENDER] - before.phase_cpu_s[AG_PHASE_RENDER];
-    status = render_trial(r, true, &pilot);
+    AG_TRY(ag_rendering_create(context, loaded, &plan.tried, &r));
+    const double preparing_s = after->phase_cpu_s[AG_PHASE_RENDER] - before.phase_cpu_s[AG_PHASE_RENDER];
+    ag_status status = render_trial(r, true, &pilot);
     if (status == AG_OK)
         status = render_trials(r, trials);
     if (status == AG_OK) {
-        const double trial_photons = (double)(tried.photon_count + tried.caustic_photon_count);
-        const double photons_grown = (double)(settings->photon_count + caustic_count) / fmax(trial_photons, 1.0);
+        double precompute_s;
+        const double render_s =
+            preparing_s + predict_samples(r, settings, &pilot, trials, plan.global_grown, &precompute_s);
+        const double write_s = WRITE_SECONDS_PER_VALUE * channel_count * pixels_of(settings);
+        const double measuring_s = fewer.cpu_s + pilot.cpu_s + trials[0].cpu_s + trials[1].cpu_s + preparing_s;
         out->samples_per_pixel = (trials[0].samples + trials[1].samples) / (trials[0].pixels + trials[1].pixels);
+        out->cpu_s = clock_process_cpu_seconds() - measuring_s + precompute_s + render_s + write_s;
         for (int i = 0; i < AG_PHASE_COUNT; i++) /* of the scene: they are over */
             out->time_s[i] = before.time_s[i];
-        const double render_cpu_s =
-            preparing + predict_samples(r, settings, &pilot, trials, global_grown, &precompute_cpu_s);
-        double cpu_before =
-            clock_process_cpu_seconds() - fewer.cpu_s - pilot.cpu_s - trials[0].cpu_s - trials[1].cpu_s - preparing;
-        const map_cost tried_cost = cost_since(s, &before);
-        for (int i = AG_PHASE_PHOTONS; i <= AG_PHASE_MAP; i++) {
-            const double phase_cpu_s = tried_cost.cpu_s[i];
-            const double wanted_s = cost_of_wanted(phase_cpu_s, fewer.maps.cpu_s[i], fewer.step, photons_grown);
-            /* some of it is one thread's; what takes longer than that has waited for a processor */
-            out->time_s[i] = fmin(s->time_s[i] - before.time_s[i], phase_cpu_s);
-            out->time_s[i] *= phase_cpu_s > 0.0 ? wanted_s / phase_cpu_s : 1.0;
-            cpu_before += wanted_s - phase_cpu_s;
-        }
-        out->time_s[AG_PHASE_PRECOMPUTE] = precompute_cpu_s / threads;
-        out->time_s[AG_PHASE_RENDER] = render_cpu_s / threads;
-        const double write_s = WRITE_SECONDS_PER_VALUE * channel_count * pixels_of(settings);
+        out->cpu_s += predict_maps(&before, after, &fewer, plan.photons_grown, out);
+        out->time_s[AG_PHASE_PRECOMPUTE] = precompute_s / after->threads;
+        out->time_s[AG_PHASE_RENDER] = render_s / after->threads;
         out->time_s[AG_PHASE_WRITE] = before.time_s[AG_PHASE_WRITE] + write_s;
         for (int i = 0; i < AG_PHASE_COUNT; i++)
             out->time_total_s += out->time_s[i];
-        out->cpu_s = cpu_before + precompute_cpu_s + render_cpu_s + write_s;
     }
     ag_rendering_finish(r, NULL);
     return status;
