@@ -32,8 +32,8 @@ typedef struct line {
     vec3 at, direction;
 } line;
 
-/* How far a line passes a point, over how far that is from the line's beginning; infinite where the line goes away from
- * it. *out_distance: the former. */
+/* How far from a point a line passes, over how far from its beginning it does; infinite where the line goes away from
+ * the point. *out_distance: how far from the point. */
 static float passing_angle(const line *l, vec3 point, float *out_distance)
 {
     vec3 to = vec3_sub(point, l->at);

@@ -122,9 +122,7 @@ static inline vec3 direction_decode_unnormalized(uint16_t code)
 
 static inline vec3 direction_decode(uint16_t code) { return vec3_normalize(direction_decode_unnormalized(code)); }
 
-/* --- how a photon arrived: by way of a diffuse vertex or not, 1 bit; direction, 181 x 181 steps; within 1.5 degrees
- * ---
- */
+/* --- how a photon arrived: 1 bit, by way of a diffuse vertex or not; direction, 181 x 181 steps, within 1.5 degrees */
 
 enum { ARRIVAL_IS_DIFFUSE = 0x8000, ARRIVAL_STEPS = 181 };
 

@@ -31,8 +31,7 @@ uint32_t photon_aim_round_trials(uint64_t wanted);
  * must not be moved. The guide is empty where no trial arrives where light is requested, or where enough paths do
  * without one. wanted is the settings', or, with a guide, at most the number that power alone would have stored before
  * it gave up, since estimates take longer the more photons they find. Of fewer photons than arrive by many paths each
- * tells more of the light than of many by few paths: so only a share is stored. Errors: AG_ERROR_MEMORY, AG_CANCELLED.
- */
+ * tells more of the light than of many by few paths: only a share is stored. Errors: AG_ERROR_MEMORY, AG_CANCELLED. */
 ag_status photon_aim_learn(const scene *s, run_context *run, const photon_tracing_settings *settings,
                            const emission_starts *starts, float share, photon_aim *out_aim);
 void photon_aim_reset(photon_aim *aim);

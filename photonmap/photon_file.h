@@ -63,7 +63,7 @@ photon_file_result photon_file_open(const run_context *run, const char *path, co
                                     char *message, size_t message_size);
 /* Reads a photon map with any key, as a private copy in memory; its claims count as empty. *out_fixed: a fingerprint of
  * all that never changes in it, its key included: maps with equal ones have the same irradiances. Results and message
- * as above. */
+ * are those of photon_file_open. */
 photon_file_result photon_file_read(const run_context *run, const char *path, photon_file_key *out_key,
                                     hash128 *out_fixed, photon_file *out_file, photon_map *out_global,
                                     photon_map *out_caustic, char *message, size_t message_size);

@@ -79,7 +79,8 @@ static inline photon_subtree photon_query_descend(photon_query *q, photon_lanes 
     return (photon_subtree){offset, node};
 }
 
-/* Takes the next visit from the stack and goes down from it, as above; false when nothing within the limit is left. */
+/* Takes the next visit from the stack and goes down from it by photon_query_descend; false when nothing within the
+ * limit is left. */
 static inline bool photon_query_next(photon_query *q, float limit, uint32_t height, photon_subtree *out_subtree)
 {
     float most = photon_query_hair_beyond(limit);

@@ -92,8 +92,8 @@ typedef struct trial_counts {
     uint64_t parts;          /* paths that splitting has added */
     uint64_t photons, asked; /* photons that arrive; and those of them that arrive where light is requested */
     double stored;           /* photons that would be stored in the mean, by stored_share 1 */
-    double roots;            /* of importance at the latter, their sum */
-    double importance;       /* there, its sum [1/m^2] */
+    double roots;            /* sum of the roots of importance where the asked ones arrive */
+    double importance;       /* sum of importance where they arrive [1/m^2] */
 } trial_counts;
 
 /* Traces `count` trial paths from a number on, which store nothing. A trial's value is the sum, over the photons

@@ -72,7 +72,7 @@ typedef struct photon_walk {
     const struct photon_kernels *kernels; /* for many at once: photon_kernels.h; they make no difference but in time */
     uint32_t way;                         /* to the leaf of the last lookup; 0: there was none */
     vec3 normal;                          /* of that lookup */
-    float min_cos;                        /* likewise */
+    float min_cos;                        /* of that lookup */
     uint32_t similar_code, other_code;    /* normals that were last found similar to it, and not */
     _Alignas(16) float low[PHOTON_TREE_DEPTH_MAX][PHOTON_WALK_AXES], high[PHOTON_TREE_DEPTH_MAX][PHOTON_WALK_AXES];
 } photon_walk;

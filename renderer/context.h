@@ -48,9 +48,8 @@ struct ag_scene {
  * with the other. */
 bool context_is_alike(const ag_context *a, const ag_context *b);
 
-/* A scene of the context's has been made; it has been freed, and a context that was destroyed before goes with the
- * last.
- */
+/* The first is called when a scene of the context has been made, the second when it has been freed. A context that the
+ * host destroyed while it had scenes is freed with the last of them. */
 void context_add_scene(ag_context *context);
 void context_remove_scene(ag_context *context);
 

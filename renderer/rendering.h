@@ -38,7 +38,7 @@ struct ag_rendering {
     bool is_view;   /* this is a picture beside another, whose progress is told */
     float aspect;   /* of the frame: width over height */
     uint64_t not_finite_before;
-    uint64_t camera_rays, camera_rays_met; /* of all passes; the latter met a surface */
+    uint64_t camera_rays, camera_rays_met; /* of all passes; those that met a surface */
     double seconds;                        /* of all passes */
     char *map_name;                        /* of the photon map's file, owned, or NULL */
     unsigned char *kept;                   /* the film's planes as of the last pass that saw that file whole, or NULL */

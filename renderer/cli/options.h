@@ -40,7 +40,7 @@ typedef struct options {
     ag_sample_type *outfile_types; /* owned array: of each of them, AG_SAMPLE_DEFAULT: as --type says */
     char **typed_names;            /* owned array and strings: the names that were given with a type */
     int outfile_count;
-    const char **confined_to; /* owned array, likewise */
+    const char **confined_to; /* owned array, the strings are argv's */
     char *command_line;       /* owned */
     const char *stats, *photons_file;
     bool photons_only;         /* no picture */

@@ -32,7 +32,7 @@ typedef struct passes {
     double next_checkpoint;     /* when, in seconds of passes_seconds() */
     double mean_at_checkpoint;  /* samples per pixel there were at the last one */
     double deadline;            /* in seconds of passes_seconds() */
-    double begun;               /* when rendering began, likewise */
+    double begun;               /* when rendering began, in seconds of passes_seconds() */
     int final;                  /* samples per pixel in the end */
     bool is_written;            /* the picture is; what is written after it is another view */
     ag_end cut;                 /* AG_END_TIME_LIMIT, AG_END_KEPT: it ends in order with fewer; else AG_END_NONE */

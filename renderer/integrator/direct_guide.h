@@ -75,7 +75,8 @@ typedef struct direct_bins {
  * bins. share: (0, 1), of the samples that follow it. */
 void direct_guide_fill(direct_guide *g, uint32_t cell, float share, const float *brought, const direct_bins *seen);
 
-/* The cell of a point, DIRECT_GUIDE_NO_CELL where nothing is known of it. normal: as above. g: NULL is fine. */
+/* The cell of a point, DIRECT_GUIDE_NO_CELL where nothing is known of it. normal: unit, or zero where
+ * light from all sides counts. g: may be NULL. */
 uint32_t direct_guide_find(const direct_guide *g, vec3 point, vec3 normal);
 
 /* Picks a light as scene_pick_light does, guided by the cell, and gives the probability of a pick as

@@ -17,8 +17,7 @@ rgb direct_light_transmittance(const transport *t, eye_worker *worker, scene_ray
                                : transmittance_of_ray(t->s, shadow, reach, &worker->rays_cut);
 }
 
-/* Picks the lamp for a point. *in_out_u become the numbers that sample it, *out_factor the factor of its own density.
- */
+/* Picks the lamp for a point. *in_out_u become the numbers that sample it, *out_factor its density's factor. */
 static uint32_t pick_lamp(const transport *t, vec3 from, vec3 normal, float u_pick, vec2 *in_out_u, float *out_factor)
 {
     const direct_guide *guide = t->direct_guide;
@@ -155,8 +154,7 @@ static light_sums sample_lamps(const transport *t, eye_worker *worker, const ver
     return sums;
 }
 
-/* Samples directions by scattering, where that can meet a lamp. The sky's part and that of groups as in sample_lamps.
- */
+/* Samples directions by scattering, where that can meet a lamp. The sky's part and the groups' are sample_lamps'. */
 static light_sums sample_scattering(const transport *t, eye_worker *worker, const vertex *v, const sampler *where,
                                     int path_vertex, sample_counts counts, rgb *in_out_sky, rgb *by_group)
 {

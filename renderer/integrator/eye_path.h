@@ -59,7 +59,8 @@ bool eye_path_trace(const transport *t, eye_worker *worker, eye_path *in_out_pat
  * that it left. */
 void eye_path_add_escaped(const transport *t, const eye_path *path, eye_sample *in_out_sample);
 
-/* Adds the radiance that the surface at the vertex emits, weighted likewise. */
+/* Adds the radiance that the surface at the vertex emits, weighted against shadow rays from the position that
+ * the ray left. */
 void eye_path_add_emitted(const transport *t, const eye_path *path, const vertex *v, eye_sample *in_out_sample);
 
 /* Next-event estimation: adds light from one lamp by these lobes. scatter_count: how many samples of the same lobes

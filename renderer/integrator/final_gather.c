@@ -145,8 +145,7 @@ static void sample_lobes(gathering *g, sampler_sequence *numbers, uint32_t begin
     }
 }
 
-/* Finds the guide for gathers at a plain vertex, on the side that it is seen from. Returns false where there is none.
- */
+/* Finds the guide for gathers at a plain vertex, on the side that is seen. Returns false where there is none. */
 static bool find_guide(const transport *t, const vertex *v, incident_guide *out_guide)
 {
     const bsdf *b = &v->scattering;

@@ -16,8 +16,7 @@ typedef struct film_point {
 /* Fills in all members but the slopes. */
 void first_hit_fill(const transport *t, eye_worker *worker, const vertex *v, const sampler *where, first_hit *out);
 
-/* Adds the slopes, for a film of that size in pixels, and transforms to camera space the members that are wanted there.
- */
+/* Adds the slopes, for a film of that size in pixels, and transforms the members wanted in camera space to it. */
 void first_hit_project(const transport *t, const film_point *from, first_hit *in_out);
 
 #endif

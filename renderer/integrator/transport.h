@@ -19,8 +19,8 @@ typedef struct transport {
     run_context *run;                 /* whether to stop */
     const photon_map *caustic;        /* may be empty */
     irradiance_cache *cache;          /* over the global map; NULL for path tracing */
-    const incident_light *incident;   /* likewise, what guides gathers; NULL: nothing */
-    const direct_guide *direct_guide; /* what guides shadow rays; NULL: nothing */
+    const incident_light *incident;   /* over the global map: guides gathers; NULL: nothing guides */
+    const direct_guide *direct_guide; /* guides shadow rays; NULL: nothing does */
     const ag_render_settings *settings;
     split_counts split;        /* of all samples; where blocks choose, of the first */
     uint32_t ray_bits;         /* no sample has more than 2^this gather rays */
@@ -40,7 +40,7 @@ typedef struct eye_worker {
     uint64_t rays_estimate;                /* of photon estimates and lookups at the point itself */
     uint64_t estimates_caustic;            /* estimates of the caustic map's light */
     uint64_t camera_rays_met;              /* those that met a surface */
-    uint64_t samples_not_finite, rays_cut; /* the latter: by TRANSMITTANCE_CROSSINGS_MAX */
+    uint64_t samples_not_finite, rays_cut; /* cut by TRANSMITTANCE_CROSSINGS_MAX */
     arena *scratch;                        /* for neighbours; what render.c has tried out beforehand always fits */
     gather_batch *batch;                   /* of the samples under way; NULL for path tracing */
     struct sample_queue *queue;            /* those samples */

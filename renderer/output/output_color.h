@@ -14,7 +14,8 @@ ag_status output_settings_check(ag_context *context, const ag_output_settings *s
 ag_status output_color_check(ag_context *context, const ag_output_settings *settings, bool scene_linear);
 
 /* Converts count pixels of 3 floats in place: scene-linear ones to settings->color_space, where that is given; others
- * to display and view. The bits do not depend on the number of threads. Errors: as above, AG_CANCELLED. */
+ * to display and view. The bits do not depend on the number of threads. Errors: AG_ERROR_COLOR,
+ * AG_ERROR_MEMORY, AG_CANCELLED. */
 ag_status output_color_apply(ag_context *context, const ag_output_settings *settings, bool scene_linear, float *pixels,
                              uint64_t count);
 

@@ -61,8 +61,7 @@ hair_point hair_point_at(const hair_fibre *fibre, rgb sigma_a, float v, vec3 out
 /* Computes f |cos|, and the density per solid angle with which hair_sample picks the direction: of radiance from
  * `direction` that leaves to `out`; or of flux from `out` that leaves to `direction`, per flux that meets the fibre. A
  * fibre that faces rays appears narrower the more it points to the light; for others the caller knows the normal, and
- * multiplies by the ratio of its cosines. is_same_side: whether `direction` and `out` are on one side of the surface.
- */
+ * multiplies by the ratio of its cosines. is_same_side: whether `direction` and `out` are on one side of it. */
 void hair_evaluate(const hair_point *p, bool is_flux, bool is_same_side, vec3 direction, rgb *out_value,
                    float *out_pdf);
 

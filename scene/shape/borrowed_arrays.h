@@ -10,8 +10,7 @@ void borrowed_arrays_note(shape *s);
 /* Whether all of them can be read; true where none is borrowed. */
 bool borrowed_arrays_are_mapped(const shape *s);
 /* Whether they cannot be read any more, or begin or end with other bytes than were noted: allocators write there when
- * an array is freed. What else has been written is not seen: shape_hash_borrowed sees all of it, and reads all of it.
- */
+ * an array is freed. What else has been written is not seen: for that, shape_hash_borrowed reads all of it. */
 bool borrowed_arrays_are_lost(const shape *s);
 
 #endif

@@ -80,9 +80,7 @@ static void test_ties(void **state)
     assert_int_equal(carry.went, 0);
     expect_words(&after, &fresh, carry.kept);
     /* in the middle of a lattice the 12 nearest, itself among them, are 11 of the 20 whose rings end at 1, 2, 4, 5
-     * steps squared: 1 + 4 + 4 + 4 = 13, so that the twelfth and the thirteenth are equally far; beside its edge they
-     * are not
-     */
+     * steps squared: 1 + 4 + 4 + 4 = 13, so that the twelfth and the thirteenth are equally far; not so at its edge */
     assert_true(carry.kept > 0 && carry.kept < SIDE * SIDE / 4);
     photon_map_reset(&before);
     photon_map_reset(&after);

@@ -170,8 +170,7 @@ static void test_times(void **state)
     json_decref(stats);
 }
 
-/* Where more photons are asked for than light can bring, a message says so, and the statistics count those there are.
- */
+/* Where more photons are asked for than light can bring, a message says so, and statistics count those there are. */
 static void test_photons_that_cannot_be_had(void **state)
 {
     (void)state;

@@ -133,9 +133,7 @@ static void expect_refused(const char *const *arguments, const char *said)
     expect_end(program_execute(NULL, arguments), 2, said);
 }
 
-/* A file that is named for two purposes is found by name, by device and inode, and by links, before anything is
- * rendered.
- */
+/* Before anything is rendered, a file that is named for two purposes is found by name, device and inode, and links. */
 static void test_one_file_twice(void **state)
 {
     (void)state;

@@ -38,8 +38,7 @@ static void expect_same(const picture *a, const picture *b)
     assert_memory_equal(a->pixels, b->pixels, 3 * (size_t)a->width * (size_t)a->height * sizeof *a->pixels);
 }
 
-/* The names of the folder's files in full, as many as there is room for; gives how many there are. All are whole ones.
- */
+/* Writes the paths of the folder's files, as many as there is room for; gives how many there are. All are whole. */
 static int list_kept(char out_paths[][512], int room_for)
 {
     char kept[256];

@@ -18,8 +18,7 @@ static gather_end end_of(uint32_t number)
     return (gather_end){{{(float)number, 0.0f, 0.0f}, {0.0f, 0.0f, 1.0f}, 1e-3f}, 7, 5};
 }
 
-/* Irradiance of pi cos at the end of each ray, as its direction's cosine is: radiance of cos with a weight of 1 / pi.
- */
+/* Irradiance of pi cos at the end of each ray, by its direction's cosine: radiance of cos, weighed by 1 / pi. */
 static float cosine_of(uint32_t number)
 {
     rng random = test_random(number);

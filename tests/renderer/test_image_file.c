@@ -376,8 +376,7 @@ static void broken_pictures_are_errors(void **state)
     assert_null(back.bytes);
 }
 
-/* OpenImageIO's reader of medical pictures, given bytes of any kind, reads them one by one: a minute or more for these.
- */
+/* OpenImageIO's reader of medical pictures reads bytes of any kind one by one, which takes a minute for these. */
 static void large_files_that_are_no_pictures_are_refused_at_once(void **state)
 {
     (void)state;

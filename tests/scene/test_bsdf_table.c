@@ -283,8 +283,7 @@ static void scattering_is_reciprocal(void **state)
     }
 }
 
-/* Photons' share and the eye's share of a gathered lobe multiply to its value, where the shading normal leans as well.
- */
+/* Photons' share and the eye's share of a gathered lobe multiply to its value, also where the shading normal leans. */
 static void gathered_lobes_are_products(void **state)
 {
     const table *t = *state;

@@ -19,8 +19,7 @@
  * ag_photon_map_info) have their size as well, and are filled as far as both sides know them (statistics.h). Structs
  * without a size do not change, but for ag_setting and ag_layer_info, which only the library makes, and to which later
  * releases may add members at the end. The SONAME, which changes whenever a public struct or enum does, keeps releases
- * apart too. Parts: each of the headers below may be included alone.
- */
+ * apart too. Each of the headers below may be included alone. */
 #ifndef AFTERGLOW_AFTERGLOW_H
 #define AFTERGLOW_AFTERGLOW_H
 

@@ -90,8 +90,7 @@ typedef struct ag_scene_settings {
                                       default AG_DEFAULT_TEXTURE_MEMORY_BYTES */
     /* A folder that takes the place of the temporary file and keeps textures between runs; it is created where it is
      * missing. Its files are named by a hash of the pictures, and any number of processes may share it. It is not used
-     * where texture_memory_bytes is 0. NULL, the default: none. The string must stay valid as long as find_file_user.
-     */
+     * where texture_memory_bytes is 0. NULL, the default: none. The string must be valid as long as find_file_user. */
     const char *texture_cache;
     uint64_t texture_cache_bytes; /* bound of the folder's size: least recently used files are removed;
                                      default AG_DEFAULT_TEXTURE_CACHE_BYTES */

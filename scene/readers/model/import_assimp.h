@@ -40,8 +40,8 @@ void assimp_transform(assimp_matrix m, const struct aiVector3D *v, double w, dou
 /* material_import_assimp.c */
 void assimp_write_material(assimp_writer *w, const struct aiMaterial *m);
 
-/* view_import_assimp.c. Whose file it is, for lamps and cameras, and then these. root: the world from the scene's root.
- */
+/* view_import_assimp.c. The first finds which program wrote the file, since lamps and cameras depend on that, and is
+ * called before the others. root: the world from the scene's root. */
 void assimp_find_maker(assimp_writer *w, const char *path);
 void assimp_write_camera(assimp_writer *w, const struct aiCamera *c, assimp_matrix root);
 void assimp_write_light(assimp_writer *w, const struct aiLight *l, assimp_matrix root);
