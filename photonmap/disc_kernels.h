@@ -29,6 +29,7 @@ typedef struct photon_disc {
     float radius;          /* > 0 */
     float level;           /* photons within this height of the point's plane lie on its surface */
     int flux_exponent_max; /* of any photon of the map */
+    bool has_offsets;      /* photon_disc_sums.offset is wanted; else it need not be right */
 } photon_disc;
 
 enum { DISC_COUNTS = 3 };

@@ -230,66 +230,78 @@ AVX2 static inline __m256i add_shifted(__m256i sum, __m256i mantissas, __m256i b
 
 /* The sums of eight lanes. Fluxes few octaves below the strongest are summed in 32 bits, for as many photons as do not
  * overflow; nothing of them is lost. */
-enum { NEAR_OCTAVES = 16, FLUSH_EVERY = 128 /* times 255 << NEAR_OCTAVES is less than 2^32 */ };
+enum { NEAR_OCTAVES = 16, FLUSH_EVERY = 128 /* vectors: times 255 << NEAR_OCTAVES is less than 2^32 */ };
 
-typedef struct sums_8 {
-    __m256i flux[3], near_flux[3], offset[3];
-    uint32_t near_count; /* vectors in near_flux */
-} sums_8;
+typedef struct near_sums {
+    __m256i red, green, blue, x, y, z;
+} near_sums;
 
-AVX2 static inline void sums_begin(sums_8 *s)
+AVX2 static inline near_sums near_sums_none(void)
 {
-    *s = (sums_8){.near_count = 0};
-    for (int c = 0; c < 3; c++)
-        s->flux[c] = s->near_flux[c] = s->offset[c] = _mm256_setzero_si256();
+    const __m256i none = _mm256_setzero_si256();
+    return (near_sums){none, none, none, none, none, none};
 }
 
-AVX2 static inline void sums_flush(sums_8 *s)
+AVX2 static inline int64_t sum_of_near(__m256i v)
 {
     const __m256i low = _mm256_set1_epi64x(UINT32_MAX);
-    for (int c = 0; c < 3; c++) {
-        __m256i even = _mm256_and_si256(s->near_flux[c], low), odd = _mm256_srli_epi64(s->near_flux[c], 32);
-        __m256i both = _mm256_slli_epi64(_mm256_add_epi64(even, odd), 32 - NEAR_OCTAVES);
-        s->flux[c] = _mm256_add_epi64(s->flux[c], both);
-        s->near_flux[c] = _mm256_setzero_si256();
+    __m256i both = _mm256_add_epi64(_mm256_and_si256(v, low), _mm256_srli_epi64(v, 32));
+    return sum_of(both) << (32 - NEAR_OCTAVES);
+}
+
+/* Adds the sums to all, and begins anew. */
+AVX2 static inline void near_sums_flush(near_sums *s, bool has_offsets, photon_disc_sums *sums)
+{
+    sums->flux[0] += sum_of_near(s->red);
+    sums->flux[1] += sum_of_near(s->green);
+    sums->flux[2] += sum_of_near(s->blue);
+    if (has_offsets) {
+        sums->offset[0] += (int32_t)sum_of_32(s->x);
+        sums->offset[1] += (int32_t)sum_of_32(s->y);
+        sums->offset[2] += (int32_t)sum_of_32(s->z);
     }
-    s->near_count = 0;
+    *s = near_sums_none();
+}
+
+/* The flux of eight photons of which some are too faint for near_sums; 0 is a photon that does not count. */
+AVX2 __attribute__((noinline)) static void add_far(__m256i code, __m256i below, photon_disc_sums *sums)
+{
+    const __m256i byte = _mm256_set1_epi32(255), none = _mm256_setzero_si256();
+    for (int c = 0; c < 3; c++) {
+        __m256i channel = _mm256_and_si256(_mm256_srlv_epi32(code, _mm256_set1_epi32(16 - 8 * c)), byte);
+        sums->flux[c] += sum_of(add_shifted(none, channel, below));
+    }
 }
 
 /* photon_disc_add of those of eight photons that count. */
-AVX2 static inline void sums_add(sums_8 *s, const photon_disc *disc, const uint32_t *flux, vec3_8 offset,
-                                 __m256i counts)
+AVX2 static inline void sums_add(near_sums *s, const photon_disc *disc, bool has_offsets, __m256 scale,
+                                 const uint32_t *flux, vec3_8 offset, __m256i counts, photon_disc_sums *sums)
 {
     const __m256i byte = _mm256_set1_epi32(255), most = _mm256_set1_epi32(disc->flux_exponent_max + 128),
                   octaves = _mm256_set1_epi32(NEAR_OCTAVES);
-    const __m256 scale = _mm256_set1_ps(PHOTON_DISC_OFFSET_UNIT / disc->radius);
     __m256i code = _mm256_and_si256(_mm256_load_si256((const __m256i *)(const void *)flux), counts);
     __m256i below = _mm256_sub_epi32(most, _mm256_srli_epi32(code, 24));
-    __m256i is_far = _mm256_and_si256(_mm256_cmpgt_epi32(below, octaves), counts);
-    if (_mm256_testz_si256(is_far, is_far)) {
+    __m256i is_far = _mm256_cmpgt_epi32(below, octaves);
+    if (__builtin_expect(_mm256_testz_si256(is_far, counts), 1)) {
         __m256i shift = _mm256_sub_epi32(octaves, below); /* of those that do not count: beyond 32 bits, which is 0 */
-        for (int c = 0; c < 3; c++)
-            s->near_flux[c] = _mm256_add_epi32(
-                s->near_flux[c], _mm256_sllv_epi32(_mm256_and_si256(_mm256_srli_epi32(code, 16 - 8 * c), byte), shift));
-        if (++s->near_count == FLUSH_EVERY)
-            sums_flush(s);
+        __m256i red = _mm256_and_si256(_mm256_srli_epi32(code, 16), byte),
+                green = _mm256_and_si256(_mm256_srli_epi32(code, 8), byte), blue = _mm256_and_si256(code, byte);
+        s->red = _mm256_add_epi32(s->red, _mm256_sllv_epi32(red, shift));
+        s->green = _mm256_add_epi32(s->green, _mm256_sllv_epi32(green, shift));
+        s->blue = _mm256_add_epi32(s->blue, _mm256_sllv_epi32(blue, shift));
     } else {
-        for (int c = 0; c < 3; c++)
-            s->flux[c] = add_shifted(s->flux[c], _mm256_and_si256(_mm256_srli_epi32(code, 16 - 8 * c), byte), below);
+        add_far(code, below, sums);
     }
-    const __m256 column[3] = {offset.x, offset.y, offset.z};
-    for (int a = 0; a < 3; a++)
-        s->offset[a] = _mm256_add_epi32(s->offset[a],
-                                        _mm256_and_si256(_mm256_cvttps_epi32(_mm256_mul_ps(column[a], scale)), counts));
+    if (has_offsets) {
+        s->x = _mm256_add_epi32(s->x, _mm256_and_si256(_mm256_cvttps_epi32(_mm256_mul_ps(offset.x, scale)), counts));
+        s->y = _mm256_add_epi32(s->y, _mm256_and_si256(_mm256_cvttps_epi32(_mm256_mul_ps(offset.y, scale)), counts));
+        s->z = _mm256_add_epi32(s->z, _mm256_and_si256(_mm256_cvttps_epi32(_mm256_mul_ps(offset.z, scale)), counts));
+    }
 }
 
-AVX2 static inline void sums_end(sums_8 *s, photon_disc_sums *out_sums)
+AVX2 static inline __m256 offset_scale(const photon_disc *disc)
 {
-    sums_flush(s);
-    for (int c = 0; c < 3; c++) {
-        out_sums->flux[c] = sum_of(s->flux[c]);
-        out_sums->offset[c] = (int32_t)sum_of_32(s->offset[c]);
-    }
+    return _mm256_set1_ps(PHOTON_DISC_OFFSET_UNIT / disc->radius);
 }
 
 /* Eight photons of those found, as vectors; false where none of them is. */
@@ -336,25 +348,38 @@ AVX2 static inline __m256i find_on_level(const photon_disc *disc, const photons_
     return _mm256_castps_si256(_mm256_or_ps(is_flat, is_convex));
 }
 
+AVX2 __attribute__((always_inline)) static inline uint32_t sum_on_level_as(const photon_disc *disc, bool has_offsets,
+                                                                           const photon_found *f,
+                                                                           photon_disc_sums *out_sums,
+                                                                           photon_neighbor *out_doubtful)
+{
+    const __m256 scale = offset_scale(disc);
+    const uint32_t slots = f->leaf_count * PHOTON_BLOCK_LANES;
+    near_sums sums = near_sums_none();
+    uint32_t kept = 0, doubtful = 0;
+    *out_sums = (photon_disc_sums){{0}, {0}};
+    for (uint32_t i = 0; i < slots; near_sums_flush(&sums, has_offsets, out_sums)) {
+        const uint32_t end = slots - i < FLUSH_EVERY * WIDTH ? slots : i + FLUSH_EVERY * WIDTH;
+        for (; i < end; i += WIDTH) {
+            photons_8 p;
+            if (!find_photons(disc, f, i, &p))
+                continue;
+            __m256i keeps = _mm256_and_si256(find_on_level(disc, &p), p.is_found);
+            sums_add(&sums, disc, has_offsets, scale, &p.block->flux[p.lane], p.offset, keeps, out_sums);
+            uint32_t on_level = (uint32_t)_mm256_movemask_ps(_mm256_castsi256_ps(keeps));
+            kept += (uint32_t)__builtin_popcount(on_level);
+            for (uint32_t rest = p.found & ~on_level; rest; rest &= rest - 1)
+                out_doubtful[doubtful++] = i + (uint32_t)__builtin_ctz(rest);
+        }
+    }
+    return kept;
+}
+
 AVX2 static uint32_t sum_on_level(const photon_disc *disc, const photon_found *f, photon_disc_sums *out_sums,
                                   photon_neighbor *out_doubtful)
 {
-    sums_8 sums;
-    sums_begin(&sums);
-    uint32_t kept = 0, doubtful = 0;
-    for (uint32_t i = 0; i < f->leaf_count * PHOTON_BLOCK_LANES; i += WIDTH) {
-        photons_8 p;
-        if (!find_photons(disc, f, i, &p))
-            continue;
-        __m256i keeps = _mm256_and_si256(find_on_level(disc, &p), p.is_found);
-        sums_add(&sums, disc, &p.block->flux[p.lane], p.offset, keeps);
-        uint32_t on_level = (uint32_t)_mm256_movemask_ps(_mm256_castsi256_ps(keeps));
-        kept += (uint32_t)__builtin_popcount(on_level);
-        for (uint32_t rest = p.found & ~on_level; rest; rest &= rest - 1)
-            out_doubtful[doubtful++] = i + (uint32_t)__builtin_ctz(rest);
-    }
-    sums_end(&sums, out_sums);
-    return kept;
+    return disc->has_offsets ? sum_on_level_as(disc, true, f, out_sums, out_doubtful)
+                             : sum_on_level_as(disc, false, f, out_sums, out_doubtful);
 }
 
 /* surface_region_contains of points by their offset from the centre. */
@@ -378,18 +403,21 @@ AVX2 static uint32_t sum_in_region(const photon_disc *disc, const surface_region
     const float *lines = region->line[0];
     const __m256i octants = _mm256_slli_epi32(load(SURFACE_REGION_OCTANT), 1);
     const __m256 line[2] = {_mm256_i32gather_ps(lines, octants, 4), _mm256_i32gather_ps(lines + 1, octants, 4)};
-    sums_8 sums;
-    sums_begin(&sums);
+    const uint32_t slots = f->leaf_count * PHOTON_BLOCK_LANES;
+    near_sums sums = near_sums_none();
     uint32_t inside = 0;
-    for (uint32_t i = 0; i < f->leaf_count * PHOTON_BLOCK_LANES; i += WIDTH) {
-        photons_8 p;
-        if (!find_photons(disc, f, i, &p))
-            continue;
-        __m256i is_inside = _mm256_and_si256(find_inside(region, line, p.offset), p.is_found);
-        sums_add(&sums, disc, &p.block->flux[p.lane], p.offset, is_inside);
-        inside += (uint32_t)__builtin_popcount((uint32_t)_mm256_movemask_ps(_mm256_castsi256_ps(is_inside)));
+    *out_sums = (photon_disc_sums){{0}, {0}};
+    for (uint32_t i = 0; i < slots; near_sums_flush(&sums, true, out_sums)) {
+        const uint32_t end = slots - i < FLUSH_EVERY * WIDTH ? slots : i + FLUSH_EVERY * WIDTH;
+        for (; i < end; i += WIDTH) {
+            photons_8 p;
+            if (!find_photons(disc, f, i, &p))
+                continue;
+            __m256i is_inside = _mm256_and_si256(find_inside(region, line, p.offset), p.is_found);
+            sums_add(&sums, disc, true, offset_scale(disc), &p.block->flux[p.lane], p.offset, is_inside, out_sums);
+            inside += (uint32_t)__builtin_popcount((uint32_t)_mm256_movemask_ps(_mm256_castsi256_ps(is_inside)));
+        }
     }
-    sums_end(&sums, out_sums);
     return inside;
 }
 

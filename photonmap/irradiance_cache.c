@@ -46,7 +46,7 @@ ag_status irradiance_cache_create(photon_map *map, irradiance_cache_mode mode, u
         store_relaxed_u64(&c.shown[i].computed, 0);
         is_complete = scratch_create(&c.scratch[i], map);
     }
-    if (!is_complete) {
+    if (!is_complete || photon_map_make_spaces(map) != AG_OK) {
         irradiance_cache_reset(&c);
         return AG_ERROR_MEMORY;
     }
@@ -126,7 +126,7 @@ static uint32_t compute(irradiance_cache *cache, uint32_t index, uint32_t claime
     const photon_map *map = cache->map;
     const photon_block *blocks = map->irradiance_photons.blocks;
     rgb irradiance;
-    uint32_t leaf = photon_map_all_have_irradiance(map) ? index / PHOTON_BLOCK_LANES : PHOTON_NONE;
+    uint32_t leaf = photon_map_index(map, index) / PHOTON_BLOCK_LANES;
     irradiance_extent extent = estimate(cache, leaf, photon_block_position(blocks, index),
                                         direction_decode(photon_block_normal(blocks, index)), worker_index, &irradiance,
                                         map->reaches ? &map->reaches[index] : NULL);

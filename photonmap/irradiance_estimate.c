@@ -181,22 +181,23 @@ static void sum_own_level(const photon_map *map, const photon_disc *disc, photon
 }
 
 /* Returns whether the surface may end within the disc, by what is cheap to tell. */
-static bool may_end(const photon_map *map, const photon_disc *disc, const photon_found *found, float radius_squared,
-                    const photon_disc_sums *sums, uint64_t *in_out_rays)
+static bool may_end(const photon_map *map, const clear_space *space, const photon_disc *disc, const photon_found *found,
+                    float radius_squared, const photon_disc_sums *sums, uint64_t *in_out_rays)
 {
-    return found->other <= radius_squared || is_lopsided(sums, disc->normal, found->count) ||
-           !surface_region_reaches_rim(map->surfaces, disc->position, disc->normal, PHOTON_ESTIMATE_MIN_COS,
+    if (found->other <= radius_squared || is_lopsided(sums, disc->normal, found->count))
+        return true;
+    return !surface_region_reaches_rim(map->surfaces, space, disc->position, disc->normal, PHOTON_ESTIMATE_MIN_COS,
                                        disc->radius, in_out_rays);
 }
 
 /* Where the surface ends within the disc: takes the photons of its part alone into the sums, and that part for the
  * area, if an estimate holds there. extent: of the whole disc; returns that of the part. */
-static irradiance_extent fit_to_surface(const photon_map *map, const photon_disc *disc, photon_found *found,
-                                        bool has_next, irradiance_extent extent, uint64_t *in_out_rays,
-                                        photon_disc_sums *in_out_sums, double *in_out_area)
+static irradiance_extent fit_to_surface(const photon_map *map, const clear_space *space, const photon_disc *disc,
+                                        photon_found *found, bool has_next, irradiance_extent extent,
+                                        uint64_t *in_out_rays, photon_disc_sums *in_out_sums, double *in_out_area)
 {
     surface_region region;
-    if (!surface_region_find(map->surfaces, disc->position, disc->normal, PHOTON_ESTIMATE_MIN_COS, disc->radius,
+    if (!surface_region_find(map->surfaces, space, disc->position, disc->normal, PHOTON_ESTIMATE_MIN_COS, disc->radius,
                              in_out_rays, &region))
         return extent;
     double area = surface_region_area(&region, disc->radius);
@@ -208,6 +209,14 @@ static irradiance_extent fit_to_surface(const photon_map *map, const photon_disc
     *in_out_area = area;
     /* farther points must see the photon anyway */
     return region.nearest_end < photon_map_far(map) ? IRRADIANCE_HOLDS_IN_SIGHT : extent;
+}
+
+/* The clear space of the leaf that the point lies in. */
+static const clear_space *find_space(const photon_map *map, vec3 position, const photon_search_hint *hint,
+                                     clear_space *spare)
+{
+    bool is_known = hint && hint->leaf != PHOTON_NONE;
+    return clear_spaces_get(map->spaces, is_known ? hint->leaf : photon_tree_leaf(&map->tree, position), spare);
 }
 
 irradiance_extent irradiance_estimate_find(const photon_map *map, vec3 position, vec3 normal, photon_neighbor *scratch,
@@ -224,6 +233,9 @@ irradiance_extent irradiance_estimate_find_reach(const photon_map *map, vec3 pos
     if (map->set.count == 0)
         return IRRADIANCE_HOLDS_EVERYWHERE;
 
+    clear_space spare;
+    const clear_space *space = map->spaces ? find_space(map, position, in_out_hint, &spare) : NULL;
+
     /* the k nearest photons, and the next one */
     const uint32_t wanted = map->nearest + 1;
     photon_found found;
@@ -236,8 +248,15 @@ irradiance_extent irradiance_estimate_find_reach(const photon_map *map, vec3 pos
     /* their disc, as far as it has the light of its middle */
     bool has_next;
     float radius_squared = find_disc(map, &found, &has_next), radius = sqrtf(radius_squared);
-    photon_disc disc = {map->blocks,           position, normal, radius, map->surfaces ? radius * LEVEL : INFINITY,
-                        map->flux_exponent_max};
+    bool is_whole =
+        space && surface_region_is_whole(map->surfaces, space, position, normal, PHOTON_ESTIMATE_MIN_COS, radius);
+    photon_disc disc = {.blocks = map->blocks,
+                        .position = position,
+                        .normal = normal,
+                        .radius = radius,
+                        .level = map->surfaces ? radius * LEVEL : INFINITY,
+                        .flux_exponent_max = map->flux_exponent_max,
+                        .has_offsets = map->surfaces && !is_whole};
 
     /* of its photons those on the point's surface, and no other level's */
     photon_disc_sums sums;
@@ -250,8 +269,8 @@ irradiance_extent irradiance_estimate_find_reach(const photon_map *map, vec3 pos
     irradiance_extent extent = has_levels ? IRRADIANCE_HOLDS_IN_SIGHT : IRRADIANCE_HOLDS_EVERYWHERE;
     if (has_next && (float)found.count < LEVEL_SHARE_MIN * (float)count)
         extent = IRRADIANCE_HOLDS_NOWHERE;
-    else if (map->surfaces && (has_levels || may_end(map, &disc, &found, radius_squared, &sums, in_out_rays)))
-        extent = fit_to_surface(map, &disc, &found, has_next, extent, in_out_rays, &sums, &area);
+    else if (disc.has_offsets && (has_levels || may_end(map, space, &disc, &found, radius_squared, &sums, in_out_rays)))
+        extent = fit_to_surface(map, space, &disc, &found, has_next, extent, in_out_rays, &sums, &area);
 
     double scale = ldexp(1.0, map->flux_exponent_max - 32) / ((double)map->set.emitted_paths * area);
     *out_irradiance = (rgb){(float)((double)sums.flux[0] * scale), (float)((double)sums.flux[1] * scale),

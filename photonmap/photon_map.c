@@ -156,6 +156,8 @@ void photon_map_reset(photon_map *map)
     map->blocks = NULL;
     free(map->reaches);
     map->reaches = NULL;
+    free(map->spaces);
+    map->spaces = NULL;
     photon_set_reset(&map->set);
 }
 
@@ -170,18 +172,54 @@ uint64_t photon_map_bytes(const photon_map *map)
     return bytes;
 }
 
+/* Discs of estimates, which are the largest thing to be asked for, mostly reach so far. */
+static const float SPACE_RADII = 3.0f;
+
+ag_status photon_map_make_spaces(photon_map *map)
+{
+    if (map->spaces || !map->surfaces || map->set.count == 0)
+        return AG_OK;
+    map->spaces = clear_spaces_create(map->surfaces, map->blocks, photon_block_count(map->set.count),
+                                      SPACE_RADII * map->mean_radius);
+    return map->spaces ? AG_OK : AG_ERROR_MEMORY;
+}
+
 uint32_t photon_map_scratch_count(const photon_map *map) { return photon_neighbors_capacity(map->nearest + 1); }
 
-/* Whether a line from the point to the photon is blocked, at this share of their distance above their surface. */
-static bool is_blocked_above(const photon_map *map, const photon_block *blocks, vec3 position, vec3 normal,
-                             uint32_t index, float share, uint64_t *in_out_rays)
+/* Lines from a point to a photon. */
+typedef struct sight {
+    vec3 position, normal, at, its_normal;
+    float distance;
+    float bulge; /* what a curved surface bulges between the two, as a share of the distance: on a sphere an eighth of
+                    the angle */
+    const clear_space *space; /* of the photon's leaf; NULL: none is known */
+    clear_space spare;
+} sight;
+
+static void sight_make(const photon_map *map, const photon_block *blocks, vec3 position, vec3 normal, uint32_t index,
+                       sight *out)
 {
+    out->position = position, out->normal = normal;
+    out->at = photon_block_position(blocks, index);
+    out->its_normal = direction_decode(photon_block_normal(blocks, index));
+    out->distance = sqrtf(vec3_distance_squared(position, out->at));
+    out->bulge = 0.125f * sqrtf(vec3_distance_squared(normal, out->its_normal));
+    out->space = NULL;
+    if (!map->spaces)
+        return;
+    uint32_t photon_index = blocks == map->blocks ? index : photon_map_index(map, index);
+    out->space = clear_spaces_get(map->spaces, photon_index / PHOTON_BLOCK_LANES, &out->spare);
+}
+
+/* Whether the line is blocked at this share of its length above the surface. */
+static bool is_blocked_above(const photon_map *map, const sight *line, float share, uint64_t *in_out_rays)
+{
+    float lift = line->distance * (share + line->bulge);
+    vec3 from = vec3_add_scaled(line->position, line->normal, lift),
+         to = vec3_add_scaled(line->at, line->its_normal, lift);
+    if (line->space && clear_space_has_line(map->surfaces, line->space, from, to))
+        return false;
     ++*in_out_rays;
-    vec3 at = photon_block_position(blocks, index), its_normal = direction_decode(photon_block_normal(blocks, index));
-    /* and over what a curved surface bulges between the two: on a sphere an eighth of the angle */
-    share += 0.125f * sqrtf(vec3_distance_squared(normal, its_normal));
-    float lift = sqrtf(vec3_distance_squared(position, at)) * share;
-    vec3 from = vec3_add_scaled(position, normal, lift), to = vec3_add_scaled(at, its_normal, lift);
     return scene_is_blocked(map->surfaces, scene_ray_make(from, vec3_sub(to, from)), 1.0f);
 }
 
@@ -191,7 +229,9 @@ static const float WALL_SHARE = 1.0f / 32.0f;
 bool photon_map_is_behind_wall(const photon_map *map, const photon_block *blocks, vec3 position, vec3 normal,
                                uint32_t index, uint64_t *in_out_rays)
 {
-    return is_blocked_above(map, blocks, position, normal, index, WALL_SHARE, in_out_rays);
+    sight line;
+    sight_make(map, blocks, position, normal, index, &line);
+    return is_blocked_above(map, &line, WALL_SHARE, in_out_rays);
 }
 
 /* A wall or door may end a little above the surface: what is lit on its one side is not lit on the other. */
@@ -200,8 +240,10 @@ static const float GAP_SHARE = 1.0f / 4.0f;
 bool photon_map_is_beyond_gap(const photon_map *map, const photon_block *blocks, vec3 position, vec3 normal,
                               uint32_t index, uint64_t *in_out_rays)
 {
-    return is_blocked_above(map, blocks, position, normal, index, WALL_SHARE, in_out_rays) ||
-           is_blocked_above(map, blocks, position, normal, index, GAP_SHARE, in_out_rays);
+    sight line;
+    sight_make(map, blocks, position, normal, index, &line);
+    return is_blocked_above(map, &line, WALL_SHARE, in_out_rays) ||
+           is_blocked_above(map, &line, GAP_SHARE, in_out_rays);
 }
 
 /* An irradiance photon higher or lower than the point by this share of its distance may lie on a board or a frame. */
@@ -259,15 +301,14 @@ static const float EMPTY_DISC_PHOTONS = 8.0f;
 
 bool photon_map_reaches(const photon_map *map, uint32_t irradiance_photon, float distance_squared, rgb irradiance)
 {
-    const photon_block *blocks = map->irradiance_photons.blocks;
-    /* a record in a tree of its own has its photon's index instead of a flux */
-    uint32_t photon_index =
-        photon_map_all_have_irradiance(map) ? irradiance_photon : photon_block_flux(blocks, irradiance_photon);
-    double photons_each = (double)map->set.count / (double)map->irradiance_photons.count;
-    double flux =
-        (double)rgb_max(flux_decode(photon_block_flux(map->blocks, photon_index))) / (double)map->set.emitted_paths;
-    return (double)rgb_max(irradiance) * (double)AG_PI * (double)distance_squared <=
-           (double)EMPTY_DISC_PHOTONS * photons_each * flux;
+    uint32_t photon_index = photon_map_index(map, irradiance_photon);
+    double photons_each = (double)map->set.count, paths = (double)map->set.emitted_paths;
+    photons_each = photon_map_all_have_irradiance(map) ? 1.0 : photons_each / (double)map->irradiance_photons.count;
+    double flux = (double)rgb_max(flux_decode(photon_block_flux(map->blocks, photon_index)));
+    double in_disc = (double)rgb_max(irradiance) * (double)AG_PI * (double)distance_squared;
+    if (in_disc * paths < 0.999 * (double)EMPTY_DISC_PHOTONS * photons_each * flux)
+        return true; /* mostly; without a division */
+    return in_disc <= (double)EMPTY_DISC_PHOTONS * photons_each * (flux / paths);
 }
 
 uint32_t photon_map_leaf(const photon_map *map, vec3 position)

@@ -5,6 +5,7 @@
 #ifndef AFTERGLOW_PHOTON_MAP_H
 #define AFTERGLOW_PHOTON_MAP_H
 
+#include "clear_spaces.h"
 #include "irradiance_photons.h"
 #include "photon_tracing.h"
 #include "photon_tree.h"
@@ -39,6 +40,7 @@ typedef struct photon_map {
     /* Radii and exponents, on which all estimates depend, are rounded, and an irradiance is rounded by its photon's
      * position, so that both stay the same where a few photons come and go. */
     bool is_steady;
+    clear_spaces *spaces; /* owned: of the leaves of `tree`, on its surfaces; NULL until a cache is made over the map */
     float *reaches; /* owned, of a steady map: for each irradiance photon whose slot is ready irradiance_reach; 0: not
                        known */
 } photon_map;
@@ -58,6 +60,14 @@ static inline bool photon_map_all_have_irradiance(const photon_map *map)
     return map->irradiance_photons.blocks == map->blocks;
 }
 
+/* Returns the index among all photons of an irradiance photon: a record in a tree of its own has it instead of a flux.
+ */
+static inline uint32_t photon_map_index(const photon_map *map, uint32_t irradiance_photon)
+{
+    return photon_map_all_have_irradiance(map) ? irradiance_photon
+                                               : photon_block_flux(map->irradiance_photons.blocks, irradiance_photon);
+}
+
 static inline irradiance_slot *photon_map_slot(const photon_map *map, uint32_t irradiance_photon)
 {
     return photon_block_slot(map->irradiance_photons.blocks, irradiance_photon);
@@ -65,6 +75,10 @@ static inline irradiance_slot *photon_map_slot(const photon_map *map, uint32_t i
 
 /* Returns the bytes of the photons, the irradiance photons and the trees. */
 uint64_t photon_map_bytes(const photon_map *map);
+
+/* Makes room for the clear spaces, where the map has photons on surfaces, unless it is there. Errors:
+ * AG_ERROR_MEMORY. */
+ag_status photon_map_make_spaces(photon_map *map);
 
 /* Returns the number of neighbours that a worker's scratch memory holds. */
 uint32_t photon_map_scratch_count(const photon_map *map);

@@ -31,7 +31,8 @@ static bool is_alike(const surface_hit *hit, vec3 normal, vec3 arrival, float mi
 /* The constants of one search. Its rays begin, or end, `lift` above the plane through the point. */
 typedef struct probe {
     const scene *s;
-    vec3 above, normal; /* the point, lifted along its normal */
+    const clear_space *space; /* may be NULL */
+    vec3 above, normal;       /* the point, lifted along its normal */
     float lift, radius, min_cos;
     ray_alpha_rule alpha_rule;
     uint64_t *rays; /* counts them */
@@ -71,27 +72,37 @@ static bool find_foot(probe *p, vec3 position, vec3 normal, surface_hit *out_foo
     return false;
 }
 
-/* Whether the surface is there so far along a unit tangent: as deep as photons within the radius may lie. */
-static bool find_below(const probe *p, vec3 tangent, float lateral, surface_hit *out_hit)
+/* Whether the surface is there so far along a unit tangent: as deep as photons within the radius may lie. out_holes:
+ * whether with holes; may be NULL. */
+static bool find_below(const probe *p, vec3 tangent, float lateral, bool *out_holes)
 {
-    vec3 down = vec3_negate(p->normal);
-    float depth = sqrtf(fmaxf(0.0f, p->radius * p->radius - lateral * lateral));
-    return find_surface(p, vec3_add_scaled(p->above, tangent, lateral), down, p->lift + depth, out_hit) &&
-           is_alike(out_hit, p->normal, down, p->min_cos);
+    surface_hit hit;
+    vec3 start = vec3_add_scaled(p->above, tangent, lateral), down = vec3_negate(p->normal);
+    float farthest = p->lift + sqrtf(fmaxf(0.0f, p->radius * p->radius - lateral * lateral));
+    if (out_holes)
+        *out_holes = false;
+    if (p->space && clear_space_ends_ray(p->s, p->space, start, down, farthest, p->min_cos))
+        return true;
+    bool is_there = find_surface(p, start, down, farthest, &hit) && is_alike(&hit, p->normal, down, p->min_cos);
+    if (is_there && out_holes)
+        *out_holes = has_holes(p->s, &hit);
+    return is_there;
 }
 
 /* How far the surface goes along a unit tangent; radius where nothing ends it. */
 static float find_extent(const probe *p, vec3 tangent)
 {
     surface_hit hit;
-    if (find_surface(p, p->above, tangent, p->radius, &hit))
+    bool is_free =
+        p->space && clear_space_has_line(p->s, p->space, p->above, vec3_add_scaled(p->above, tangent, p->radius));
+    if (!is_free && find_surface(p, p->above, tangent, p->radius, &hit))
         return is_alike(&hit, p->normal, tangent, p->min_cos) ? p->radius : hit.distance;
     float high = PROBE_AT * p->radius, low = 0.0f;
-    if (find_below(p, tangent, high, &hit))
+    if (find_below(p, tangent, high, NULL))
         return p->radius;
     for (int i = 0; i < BISECTIONS; i++) {
         float middle = 0.5f * (low + high);
-        if (find_below(p, tangent, middle, &hit))
+        if (find_below(p, tangent, middle, NULL))
             low = middle;
         else
             high = middle;
@@ -164,37 +175,42 @@ static float share_that_is_there(const probe *p, const surface_region *r)
         vec3 tangent = vec3_add_scaled(vec3_scale(r->x, d.x / length), r->y, d.y / length);
         if (!surface_region_contains(r, vec3_add_scaled(r->center, tangent, length * p->radius)))
             continue;
-        surface_hit hit;
-        bool is_there = find_below(&what_is_there, tangent, length * p->radius, &hit);
+        bool is_there = find_below(&what_is_there, tangent, length * p->radius, NULL);
         there += is_there;
-        all += is_there || find_below(p, tangent, length * p->radius, &hit);
+        all += is_there || find_below(p, tangent, length * p->radius, NULL);
     }
     /* one more of each, the point itself: of a binomial count that makes the mean of 1 / share right */
     return ((float)there + 1.0f) / ((float)all + 1.0f);
 }
 
-bool surface_region_reaches_rim(const scene *s, vec3 position, vec3 normal, float min_cos, float radius,
-                                uint64_t *in_out_rays)
+bool surface_region_reaches_rim(const scene *s, const clear_space *space, vec3 position, vec3 normal, float min_cos,
+                                float radius, uint64_t *in_out_rays)
 {
     float lift = LIFT * radius;
     vec3 above = vec3_add_scaled(position, normal, lift), x, y;
-    probe p = {s, above, normal, lift, radius, min_cos, RAY_MEETS_ALPHA, in_out_rays};
+    probe p = {s, space, above, normal, lift, radius, min_cos, RAY_MEETS_ALPHA, in_out_rays};
     find_tangents(position, normal, &x, &y);
     for (int i = 0; i < SURFACE_REGION_SECTORS; i += 2) {
-        surface_hit hit;
+        bool has_holes_there;
         vec3 tangent = vec3_add_scaled(vec3_scale(x, UNIT[i][0]), y, UNIT[i][1]);
-        if (!find_below(&p, tangent, PROBE_AT * radius, &hit) || has_holes(s, &hit))
+        if (!find_below(&p, tangent, PROBE_AT * radius, &has_holes_there) || has_holes_there)
             return false;
     }
     return true;
 }
 
-bool surface_region_find(const scene *s, vec3 position, vec3 normal, float min_cos, float radius, uint64_t *in_out_rays,
-                         surface_region *out_region)
+bool surface_region_is_whole(const scene *s, const clear_space *space, vec3 position, vec3 normal, float min_cos,
+                             float radius)
+{
+    return clear_space_holds_disc(s, space, position, normal, radius, PROBE_AT, min_cos);
+}
+
+bool surface_region_find(const scene *s, const clear_space *space, vec3 position, vec3 normal, float min_cos,
+                         float radius, uint64_t *in_out_rays, surface_region *out_region)
 {
     float extent[SURFACE_REGION_SECTORS];
     surface_region *r = out_region;
-    probe p = {s, position, normal, 0.0f, radius, min_cos, RAY_MEETS_ALPHA, in_out_rays};
+    probe p = {s, space, position, normal, 0.0f, radius, min_cos, RAY_MEETS_ALPHA, in_out_rays};
     surface_hit foot;
     if (!find_foot(&p, position, normal, &foot))
         return false;

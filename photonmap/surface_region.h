@@ -8,7 +8,7 @@
 #ifndef AFTERGLOW_SURFACE_REGION_H
 #define AFTERGLOW_SURFACE_REGION_H
 
-#include "scene.h"
+#include "rays/clear_space.h"
 
 enum { SURFACE_REGION_SECTORS = 8 };
 
@@ -26,16 +26,22 @@ typedef struct surface_region {
 static const uint32_t SURFACE_REGION_OCTANT[SURFACE_REGION_SECTORS] = {0, 1, 3, 2, 7, 6, 4, 5};
 
 /* Finds the region around a point. min_cos: normals with a greater cosine belong to the surface, as for photons. The
- * rays that are cast are added to *in_out_rays, here and below. Returns false where the surface has neither end nor
+ * rays that are cast are added to *in_out_rays, here and below: none is where a clear space near by, which may be
+ * NULL, tells what it would meet. Returns false where the surface has neither end nor
  * hole within radius, and where there is no surface at the point. */
-bool surface_region_find(const scene *s, vec3 position, vec3 normal, float min_cos, float radius, uint64_t *in_out_rays,
-                         surface_region *out_region);
+bool surface_region_find(const scene *s, const clear_space *space, vec3 position, vec3 normal, float min_cos,
+                         float radius, uint64_t *in_out_rays, surface_region *out_region);
 
 /* Returns whether surface lies below four points near the rim of the disc, a quarter turn apart: a test for edges at a
  * quarter of the search's cost, for discs in which nothing else indicates one. An edge nearer than 0.64 of the radius
  * is always found. */
-bool surface_region_reaches_rim(const scene *s, vec3 position, vec3 normal, float min_cos, float radius,
-                                uint64_t *in_out_rays);
+bool surface_region_reaches_rim(const scene *s, const clear_space *space, vec3 position, vec3 normal, float min_cos,
+                                float radius, uint64_t *in_out_rays);
+
+/* Returns whether the space tells that surface_region_find would return false, whatever else hints at an edge. It is
+ * the cheapest of the three. */
+bool surface_region_is_whole(const scene *s, const clear_space *space, vec3 position, vec3 normal, float min_cos,
+                             float radius);
 
 bool surface_region_contains(const surface_region *region, vec3 position);
 

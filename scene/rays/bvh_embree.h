@@ -9,12 +9,16 @@
 struct bvh_tree;
 struct bvh_device;
 
+enum { BVH_SPHERES_MAX = 64 };
+
 struct bvh {
     RTCScene scene; /* the world's */
     struct bvh_tree *world;
     struct bvh_tree **objects; /* [object_count], NULL where none is to be seen */
     uint32_t object_count;
     struct bvh_device *device;
+    bool tells_what_is_near;                         /* Embree's point queries find all surfaces but these spheres */
+    uint32_t sphere_count, spheres[BVH_SPHERES_MAX]; /* shapes */
 };
 
 #endif

@@ -129,6 +129,11 @@ static RTCGeometry make_curves(RTCDevice device, const shape *s)
     return geometry;
 }
 
+bool embree_has_as_sphere(const shape *s)
+{
+    return s->kind == SHAPE_SPHERE && s->as.quadric.uniform_radius > 0.0f && shape_is_opaque(s);
+}
+
 bool embree_attach_shape(RTCDevice device, RTCScene into, embree_user *user, uint32_t index)
 {
     const shape *s = user->shape;
@@ -146,7 +151,7 @@ bool embree_attach_shape(RTCDevice device, RTCScene into, embree_user *user, uin
                                    3 * sizeof(uint32_t), m->triangle_count);
     } else if (s->kind == SHAPE_CURVES) {
         geometry = make_curves(device, s);
-    } else if (s->as.quadric.uniform_radius > 0.0f && shape_is_opaque(s)) {
+    } else if (embree_has_as_sphere(s)) {
         geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_SPHERE_POINT);
         float *sphere =
             rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4, 4 * sizeof(float), 1);

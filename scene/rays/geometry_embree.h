@@ -20,6 +20,9 @@ extern char embree_threads;
  * while the geometry lives. Returns false when out of memory. */
 bool embree_attach_shape(RTCDevice device, RTCScene into, embree_user *user, uint32_t index);
 
+/* Returns whether Embree knows the shape as a sphere of its own. */
+bool embree_has_as_sphere(const shape *s);
+
 /* Returns the shape's number of primitives. */
 uint64_t embree_item_count(const shape *s);
 

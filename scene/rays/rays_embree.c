@@ -1,5 +1,5 @@
-/* rays_embree.c: casts rays at the scene's shapes, singly and as fans, and evaluates their hits. With bvh_embree.c and
- * geometry_embree.c the only file that knows Embree. Rests on: Wald et al., "Embree: A Kernel Framework for Efficient
+/* rays_embree.c: casts rays at the scene's shapes, singly and as fans, and evaluates their hits. Only the files
+ * *_embree.c know Embree. Rests on: Wald et al., "Embree: A Kernel Framework for Efficient
  * CPU Ray Tracing", 2014. Flow: bvh_embree -> [here] -> transmittance. Threads: rays may be cast from any. */
 #include "rays/bvh_embree.h"
 #include "rays/rays.h"

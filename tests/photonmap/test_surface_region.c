@@ -27,7 +27,7 @@ typedef struct test_point {
 static void areas_are_those_of_cut_discs(void **state)
 {
     (void)state;
-    uint64_t rays = 0;
+    uint64_t rays = 0, known = 0;
     test_run r;
     test_run_init(&r, 1);
     scene *s = test_scene_create(&r, ROOM);
@@ -46,14 +46,26 @@ static void areas_are_those_of_cut_discs(void **state)
         for (int k = 0; k < TRIALS; k++) {
             vec3 jitter = {(rng_float(&random) - 0.5f) * 2e-3f, 0.0f, (rng_float(&random) - 0.5f) * 2e-3f};
             surface_region region;
-            bool is_bounded = surface_region_find(s, vec3_add(points[i].at, jitter), UP, 0.5f, radius, &rays, &region);
+            bool is_bounded =
+                surface_region_find(s, NULL, vec3_add(points[i].at, jitter), UP, 0.5f, radius, &rays, &region);
             assert_int_equal(is_bounded, points[i].expected > 0.0);
             sum += is_bounded ? surface_region_area(&region, radius) / ((double)radius * radius) : 0.0;
+            /* what need not be cast changes nothing */
+            clear_space space;
+            surface_region same = region;
+            clear_space_find(s, points[i].at, UP, 2.0f * radius, &space);
+            uint64_t fewer = 0;
+            assert_int_equal(
+                surface_region_find(s, &space, vec3_add(points[i].at, jitter), UP, 0.5f, radius, &fewer, &same),
+                is_bounded);
+            assert_true(!is_bounded || memcmp(&same, &region, sizeof same) == 0);
+            known += fewer;
         }
         double mean = sum / TRIALS;
         if (points[i].expected > 0.0 && !(fabs(mean - points[i].expected) < 0.01 * points[i].expected))
             fail_msg("point %zu: area %.4f, not %.4f", i, mean, points[i].expected);
     }
+    assert_true(known < rays / 2);
     scene_destroy(s);
     test_run_reset(&r);
 }
@@ -74,7 +86,7 @@ static void area_and_membership_agree(void **state)
     for (int i = 0; i < DISCS; i++) {
         vec3 at = {2.0f * rng_float(&random) - 1.0f, 0.0f, 2.0f * rng_float(&random) - 1.0f};
         surface_region region;
-        if (!surface_region_find(s, at, UP, 0.5f, radius, &rays, &region))
+        if (!surface_region_find(s, NULL, at, UP, 0.5f, radius, &rays, &region))
             continue;
         bounded++;
         int inside = 0, astray = 0;
@@ -112,11 +124,12 @@ static void a_ball_has_no_edge(void **state)
     for (int i = 0; i < 200; i++) {
         vec3 n = sample_uniform_sphere(rng_vec2(&random));
         surface_region region;
-        assert_false(surface_region_find(s, vec3_add((vec3){5.0f, 0.0f, 0.0f}, n), n, 0.5f, 0.4f, &rays, &region));
+        assert_false(
+            surface_region_find(s, NULL, vec3_add((vec3){5.0f, 0.0f, 0.0f}, n), n, 0.5f, 0.4f, &rays, &region));
     }
     /* and where there is no surface there is no region */
     surface_region region;
-    assert_false(surface_region_find(s, (vec3){0.0f, 0.5f, 0.0f}, UP, 0.5f, 0.4f, &rays, &region));
+    assert_false(surface_region_find(s, NULL, (vec3){0.0f, 0.5f, 0.0f}, UP, 0.5f, 0.4f, &rays, &region));
     scene_destroy(s);
     test_run_reset(&r);
 }

@@ -1,0 +1,30 @@
+/* clear_spaces.c: see clear_spaces.h.
+ * Threads: see clear_spaces.h. */
+#include "clear_spaces.h"
+
+#include <stdlib.h>
+
+enum { EMPTY, BUSY, READY };
+
+clear_spaces *clear_spaces_create(const scene *s, const photon_block *blocks, uint64_t block_count, float radius)
+{
+    clear_spaces *c = calloc(1, sizeof *c + (size_t)block_count * sizeof c->entries[0]);
+    if (c)
+        c->s = s, c->blocks = blocks, c->radius = radius;
+    return c;
+}
+
+const clear_space *clear_spaces_get(clear_spaces *spaces, uint32_t block, clear_space *spare)
+{
+    clear_spaces_entry *e = &spaces->entries[block];
+    uint32_t first = block * PHOTON_BLOCK_LANES, expected = EMPTY;
+    if (load_acquire_u32(&e->state) == READY) /* pairs with the release below */
+        return &e->space;
+    vec3 normal = direction_decode(photon_block_normal(spaces->blocks, first));
+    clear_space_find(spaces->s, photon_block_position(spaces->blocks, first), normal, spaces->radius, spare);
+    if (cas_acquire_u32(&e->state, &expected, BUSY)) {
+        e->space = *spare;
+        store_release_u32(&e->state, READY); /* pairs with the acquire above */
+    }
+    return spare;
+}

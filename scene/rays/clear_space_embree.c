@@ -1,0 +1,332 @@
+/* clear_space_embree.c: see clear_space.h. Embree's point queries tell which surfaces are near.
+ * Threads: see clear_space.h. */
+#include "rays/clear_space.h"
+
+#include "rays/bvh_embree.h"
+#include "rays/transmittance.h"
+#include "shape/alpha.h"
+
+/* The ray down to the surface starts so high, as a share of the radius; what is higher than that is another surface. */
+static const float LIFT = 1.0f / 64.0f;
+/* Space with more surfaces than that in it is not looked at further: a query would take longer than it saves. */
+enum { SURFACES_MOST = 64, TRIALS = 3 };
+/* Distances are this much larger than what is known to be clear. */
+static const float ROUNDING = 0x1p-10f;
+
+typedef struct search {
+    const scene *s;
+    const clear_space *space;
+    uint32_t surfaces;                     /* met so far */
+    uint32_t shape_index, primitive_index; /* of the nearest obstacle */
+} search;
+
+static bool is_sphere(const shape *at) { return at->kind == SHAPE_SPHERE && at->as.quadric.uniform_radius > 0.0f; }
+
+typedef struct triangle {
+    vec3 a, b, c;
+} triangle;
+
+static triangle triangle_of(const mesh *m, uint32_t index)
+{
+    const uint32_t *corner = &m->indices[3 * (size_t)index];
+    return (triangle){m->positions[corner[0]], m->positions[corner[1]], m->positions[corner[2]]};
+}
+
+/* The squared distance from a point to a triangle. */
+static float triangle_distance_squared(vec3 p, triangle t)
+{
+    vec3 a = t.a, b = t.b, c = t.c;
+    vec3 ab = vec3_sub(b, a), ac = vec3_sub(c, a), ap = vec3_sub(p, a), bp = vec3_sub(p, b), cp = vec3_sub(p, c);
+    float d1 = vec3_dot(ab, ap), d2 = vec3_dot(ac, ap), d3 = vec3_dot(ab, bp), d4 = vec3_dot(ac, bp),
+          d5 = vec3_dot(ab, cp), d6 = vec3_dot(ac, cp);
+    float va = d3 * d6 - d5 * d4, vb = d5 * d2 - d1 * d6, vc = d1 * d4 - d3 * d2;
+    vec3 nearest;
+    if (d1 <= 0.0f && d2 <= 0.0f)
+        nearest = a;
+    else if (d3 >= 0.0f && d4 <= d3)
+        nearest = b;
+    else if (d6 >= 0.0f && d5 <= d6)
+        nearest = c;
+    else if (vc <= 0.0f && d1 >= 0.0f && d3 <= 0.0f)
+        nearest = vec3_add_scaled(a, ab, d1 / (d1 - d3));
+    else if (vb <= 0.0f && d2 >= 0.0f && d6 <= 0.0f)
+        nearest = vec3_add_scaled(a, ac, d2 / (d2 - d6));
+    else if (va <= 0.0f && d4 - d3 >= 0.0f && d5 - d6 >= 0.0f)
+        nearest = vec3_add_scaled(b, vec3_sub(c, b), (d4 - d3) / ((d4 - d3) + (d5 - d6)));
+    else
+        nearest = vec3_add_scaled(vec3_add_scaled(a, ab, vb / (va + vb + vc)), ac, vc / (va + vb + vc));
+    float squared = vec3_distance_squared(p, nearest);
+    return squared >= 0.0f ? squared : 0.0f; /* of a triangle without area it may be no number */
+}
+
+/* Whether a triangle lies in a plane, rather than below it with some corner in it. */
+static bool is_level(triangle t, vec3 normal)
+{
+    vec3 n = vec3_cross(vec3_sub(t.b, t.a), vec3_sub(t.c, t.a));
+    float along = vec3_dot(n, normal);
+    return along * along >= 0.999f * vec3_length_squared(n);
+}
+
+/* Whether a surface lies below one of the space's planes. What is level with one may be met in the place of what the
+ * plane is of: so it must have the same normal, and no holes. */
+static bool is_below(const clear_space *space, const shape *at, uint32_t primitive_index)
+{
+    for (uint32_t i = 0; i < space->plane_count; i++) {
+        const clear_space_plane *p = &space->plane[i];
+        float highest = INFINITY, most = p->height - space->margin;
+        if (at->kind == SHAPE_MESH) {
+            triangle t = triangle_of(&at->as.mesh, primitive_index);
+            highest = fmaxf(vec3_dot(t.a, p->normal), fmaxf(vec3_dot(t.b, p->normal), vec3_dot(t.c, p->normal)));
+            if (i > 0 || (highest > most && shape_is_opaque(at) && is_level(t, p->normal)))
+                most = p->height + space->margin;
+        } else if (is_sphere(at)) {
+            highest = vec3_dot(at->as.quadric.center, p->normal) + at->as.quadric.uniform_radius;
+            most = p->height + (i > 0 ? space->margin : -space->margin);
+        }
+        if (highest <= most)
+            return true;
+    }
+    return false;
+}
+
+/* Returns the distance from the centre to a surface that does not lie below the space; INFINITY: it does, or is the
+ * space's own. */
+static float distance_to_obstacle(const search *q, uint32_t shape_index, uint32_t primitive_index)
+{
+    const clear_space *space = q->space;
+    const shape *at = &q->s->shapes[shape_index];
+    bool is_own = shape_index == space->shape_index && (primitive_index == space->primitive_index || is_sphere(at));
+    if (is_own || is_below(space, at, primitive_index))
+        return INFINITY;
+    if (at->kind == SHAPE_MESH)
+        return sqrtf(triangle_distance_squared(q->space->center, triangle_of(&at->as.mesh, primitive_index)));
+    if (is_sphere(at))
+        return fabsf(sqrtf(vec3_distance_squared(q->space->center, at->as.quadric.center)) -
+                     at->as.quadric.uniform_radius);
+    vec3 low, high;
+    shape_bounds(at, &low, &high);
+    return sqrtf(vec3_distance_squared(q->space->center, vec3_min(vec3_max(q->space->center, low), high)));
+}
+
+/* Makes the ball smaller where a surface reaches into it. Returns whether it does. */
+static bool meet_surface(search *q, uint32_t shape_index, uint32_t primitive_index, float *in_out_radius)
+{
+    float distance = 0.0f;
+    if (++q->surfaces <= SURFACES_MOST)
+        distance = distance_to_obstacle(q, shape_index, primitive_index);
+    if (!(distance < *in_out_radius))
+        return false;
+    q->shape_index = shape_index;
+    q->primitive_index = primitive_index;
+    *in_out_radius = distance;
+    return true;
+}
+
+/* Embree's. */
+static bool meet_primitive(struct RTCPointQueryFunctionArguments *arguments)
+{
+    return meet_surface(arguments->userPtr, arguments->geomID, arguments->primID, &arguments->query->radius);
+}
+
+/* Returns the distance to the nearest obstacle, at most `radius`. */
+static float find_obstacle(search *q, float radius)
+{
+    struct RTCPointQuery query = {q->space->center.x, q->space->center.y, q->space->center.z, 0.0f, radius};
+    struct RTCPointQueryContext context;
+    rtcInitPointQueryContext(&context);
+    rtcPointQuery(q->s->bvh->scene, &query, &context, meet_primitive, q);
+    for (uint32_t i = 0; i < q->s->bvh->sphere_count; i++) {
+        const quadric *sphere = &q->s->shapes[q->s->bvh->spheres[i]].as.quadric;
+        float reach = query.radius + sphere->uniform_radius;
+        if (vec3_distance_squared(q->space->center, sphere->center) < reach * reach)
+            meet_surface(q, q->s->bvh->spheres[i], 0, &query.radius);
+    }
+    return query.radius;
+}
+
+/* A plane between the centre and an obstacle, which lies below it. Returns false where there is none. */
+static bool part_from_obstacle(const search *q, clear_space_plane *out_plane)
+{
+    const shape *at = &q->s->shapes[q->shape_index];
+    if (is_sphere(at)) {
+        vec3 away = vec3_sub(q->space->center, at->as.quadric.center);
+        float distance = vec3_length(away), radius = at->as.quadric.uniform_radius;
+        out_plane->normal = vec3_scale(away, 1.0f / distance);
+        out_plane->height = vec3_dot(at->as.quadric.center, out_plane->normal) + radius;
+        return distance > radius;
+    }
+    if (at->kind != SHAPE_MESH)
+        return false;
+    triangle t = triangle_of(&at->as.mesh, q->primitive_index);
+    vec3 n = vec3_cross(vec3_sub(t.b, t.a), vec3_sub(t.c, t.a));
+    float length = vec3_length(n);
+    n = vec3_face_forward(vec3_scale(n, 1.0f / length), vec3_sub(q->space->center, t.a));
+    *out_plane = (clear_space_plane){n, fmaxf(vec3_dot(n, t.a), fmaxf(vec3_dot(n, t.b), vec3_dot(n, t.c)))};
+    return length > 0.0f;
+}
+
+/* Finds the surface itself. */
+static bool find_own_surface(const scene *s, vec3 center, vec3 normal, float radius, clear_space *out_space)
+{
+    surface_hit hit;
+    scene_ray down = scene_ray_make(vec3_add_scaled(center, normal, LIFT * radius), vec3_negate(normal));
+    if (!scene_find_surface(s, down, 2.0f * LIFT * radius, &hit) ||
+        vec3_distance_squared(hit.position, center) > hit.epsilon * hit.epsilon)
+        return false;
+    const shape *at = &s->shapes[hit.shape_index];
+    vec3 n = vec3_face_forward(hit.geometric_normal, normal);
+    if (!shape_is_opaque(at) || !(vec3_dot(n, normal) > 0.9f))
+        return false;
+    if (is_sphere(at) ? !(vec3_dot(vec3_sub(center, at->as.quadric.center), n) > 0.0f) : at->kind != SHAPE_MESH)
+        return false;
+    *out_space = (clear_space){.center = center,
+                               .radius = radius,
+                               .margin = hit.epsilon,
+                               .shape_index = hit.shape_index,
+                               .primitive_index = hit.primitive_index};
+    if (!is_sphere(at))
+        out_space->plane[out_space->plane_count++] = (clear_space_plane){n, vec3_dot(n, hit.position)};
+    return true;
+}
+
+/* Finds the ball, and the planes that part it from obstacles. Returns false where there are too many surfaces. */
+static bool find_ball(const scene *s, float radius, clear_space *space)
+{
+    search q = {.s = s, .space = space};
+    while ((space->radius = find_obstacle(&q, radius)) < radius && space->plane_count < CLEAR_SPACE_PLANES &&
+           q.surfaces <= SURFACES_MOST && part_from_obstacle(&q, &space->plane[space->plane_count]))
+        space->plane_count++;
+    return q.surfaces <= SURFACES_MOST;
+}
+
+void clear_space_find(const scene *s, vec3 center, vec3 normal, float radius, clear_space *out_space)
+{
+    clear_space own, space;
+    *out_space = (clear_space){0};
+    if (!s->bvh->tells_what_is_near || !find_own_surface(s, center, normal, radius, &own))
+        return;
+    for (int trial = 0; trial < TRIALS; trial++, radius *= 0.25f) {
+        space = own;
+        if (!find_ball(s, radius, &space))
+            continue;
+        space.radius = fmaxf(space.radius * (1.0f - ROUNDING) - space.margin, 0.0f);
+        *out_space = space;
+        return;
+    }
+}
+
+/* Whether a line stays outside of a sphere. */
+static bool passes_sphere(const quadric *sphere, float margin, vec3 from, vec3 to)
+{
+    vec3 way = vec3_sub(to, from), toward = vec3_sub(sphere->center, from);
+    float square = vec3_dot(way, way), along = vec3_dot(toward, way), least = sphere->uniform_radius + margin;
+    float share = square > 0.0f ? fminf(fmaxf(along / square, 0.0f), 1.0f) : 0.0f;
+    return vec3_length_squared(vec3_sub(toward, vec3_scale(way, share))) > least * least;
+}
+
+/* Whether a point is in the ball, and above its planes from that number on. */
+static bool is_within(const clear_space *space, vec3 point, uint32_t first_plane)
+{
+    bool is_above = vec3_distance_squared(point, space->center) < space->radius * space->radius;
+    for (uint32_t i = first_plane; i < space->plane_count && is_above; i++)
+        is_above = vec3_dot(point, space->plane[i].normal) > space->plane[i].height + 2.0f * space->margin;
+    return is_above;
+}
+
+bool clear_space_has_line(const scene *s, const clear_space *space, vec3 from, vec3 to)
+{
+    if (!is_within(space, from, 0) || !is_within(space, to, 0))
+        return false;
+    const shape *at = &s->shapes[space->shape_index];
+    return at->kind == SHAPE_MESH || passes_sphere(&at->as.quadric, 2.0f * space->margin, from, to);
+}
+
+/* Returns the distance along the ray to the plane or the sphere of the space, from outside, and the normal there. */
+static bool find_meeting(const shape *at, const clear_space *space, vec3 origin, vec3 direction, float *out_distance,
+                         vec3 *out_normal)
+{
+    if (at->kind == SHAPE_MESH) {
+        const clear_space_plane *p = &space->plane[0];
+        *out_normal = p->normal;
+        *out_distance = (p->height - vec3_dot(origin, p->normal)) / vec3_dot(direction, p->normal);
+        return true;
+    }
+    const quadric *sphere = &at->as.quadric;
+    float radius = sphere->uniform_radius;
+    vec3 from = vec3_sub(origin, sphere->center);
+    float along = -vec3_dot(from, direction);
+    float lateral_squared = vec3_length_squared(vec3_add_scaled(from, direction, along));
+    if (!(lateral_squared < (1.0f - ROUNDING) * radius * radius))
+        return false;
+    *out_distance = along - sqrtf(radius * radius - lateral_squared);
+    *out_normal = vec3_scale(vec3_add_scaled(from, direction, *out_distance), 1.0f / radius);
+    return true;
+}
+
+/* Whether a point in a triangle's plane lies in it, and off its edges by a share of their heights. */
+static bool is_inside(triangle t, vec3 normal, vec3 point)
+{
+    vec3 to_a = vec3_sub(t.a, point), to_b = vec3_sub(t.b, point), to_c = vec3_sub(t.c, point);
+    float all = vec3_dot(vec3_cross(vec3_sub(t.b, t.a), vec3_sub(t.c, t.a)), normal), sign = all < 0.0f ? -1.0f : 1.0f;
+    float of_a = vec3_dot(vec3_cross(to_b, to_c), normal), of_b = vec3_dot(vec3_cross(to_c, to_a), normal),
+          of_c = vec3_dot(vec3_cross(to_a, to_b), normal);
+    return fminf(of_a * sign, fminf(of_b * sign, of_c * sign)) > ROUNDING * fabsf(all);
+}
+
+bool clear_space_ends_ray(const scene *s, const clear_space *space, vec3 origin, vec3 direction, float farthest,
+                          float min_cos)
+{
+    const shape *at = &s->shapes[space->shape_index];
+    bool is_plane = at->kind == SHAPE_MESH;
+    float distance, margin = 2.0f * space->margin;
+    vec3 normal;
+    if (!is_within(space, origin, 0) || !find_meeting(at, space, origin, direction, &distance, &normal))
+        return false;
+    vec3 end = vec3_add_scaled(origin, direction, distance);
+    return distance > margin && distance < (1.0f - ROUNDING) * farthest - margin &&
+           -vec3_dot(normal, direction) > min_cos + ROUNDING && is_within(space, end, is_plane) &&
+           (!is_plane || is_inside(triangle_of(&at->as.mesh, space->primitive_index), normal, end));
+}
+
+/* Whether a disc in a triangle's plane lies in it. */
+static bool holds_disc(triangle t, vec3 normal, vec3 position, float radius)
+{
+    const vec3 corner[3] = {t.a, t.b, t.c};
+    float side = vec3_dot(vec3_cross(vec3_sub(t.b, t.a), vec3_sub(t.c, t.a)), normal) < 0.0f ? -1.0f : 1.0f;
+    for (int i = 0; i < 3; i++) {
+        vec3 edge = vec3_sub(corner[(i + 1) % 3], corner[i]);
+        float height = side * vec3_dot(vec3_cross(normal, edge), vec3_sub(position, corner[i])); /* times its length */
+        if (!(height > 0.0f && height * height > radius * radius * vec3_length_squared(edge)))
+            return false;
+    }
+    return true;
+}
+
+bool clear_space_holds_disc(const scene *s, const clear_space *space, vec3 position, vec3 normal, float radius,
+                            float share, float min_cos)
+{
+    static const float SLACK = 1.0f / 64.0f, LIFT_MOST = 1.0f / 16.0f;
+    const shape *at = &s->shapes[space->shape_index];
+    const float reach = radius * (1.0f + SLACK), margin = 2.0f * space->margin,
+                ball = space->radius - LIFT_MOST * radius;
+    if (!(ball > reach) || !(vec3_distance_squared(position, space->center) < (ball - reach) * (ball - reach)))
+        return false;
+    for (uint32_t i = at->kind == SHAPE_MESH; i < space->plane_count; i++)
+        if (!(vec3_dot(position, space->plane[i].normal) >
+              space->plane[i].height + reach + LIFT_MOST * radius + margin))
+            return false;
+    const float lateral = share * reach;
+    if (at->kind == SHAPE_MESH) {
+        const clear_space_plane *p = &space->plane[0];
+        return vec3_dot(normal, p->normal) > 0.0f && fabsf(vec3_dot(position, p->normal) - p->height) <= margin &&
+               holds_disc(triangle_of(&at->as.mesh, space->primitive_index), p->normal, position, lateral + margin);
+    }
+    const quadric *sphere = &at->as.quadric;
+    vec3 out = vec3_sub(position, sphere->center);
+    float r = sphere->uniform_radius, cosine_squared = 1.0f - lateral * lateral / (r * r);
+    if (!(vec3_dot(normal, out) > 0.0f) || fabsf(vec3_length(out) - r) > margin ||
+        !(cosine_squared > min_cos * min_cos + SLACK))
+        return false;
+    float depth = r * (1.0f - sqrtf(cosine_squared)) + margin;
+    return depth * depth < (1.0f - SLACK) * (radius * radius - lateral * lateral);
+}
