@@ -88,8 +88,8 @@ static const char *write_tuft(const char *const materials[3])
     return write_text("tuft.pbrt", text);
 }
 
-/* Most of the time goes into photons, and a tenth of the caustic ones that were traced found their way: so they are
- * few, and samples are many. */
+/* Most of the time goes into photons, and of ninety caustic paths one stores a photon: so few are asked for, and there
+ * are more samples. */
 #define HAIR_MAP "--photons=1e5", "--gather-samples=4"
 
 static void test_a_tuft_of_hair(void **state)
