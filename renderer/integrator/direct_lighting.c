@@ -17,6 +17,9 @@ rgb direct_light_transmittance(const transport *t, eye_worker *worker, scene_ray
                                : transmittance_of_ray(t->s, shadow, reach, &worker->rays_cut);
 }
 
+/* Added to the vertex by which the number is drawn that decides whether there is a sample by scattering. */
+enum { KEY_OF_CHANCE = 1 << 30 };
+
 /* Picks the lamp for a point. *in_out_u become the numbers that sample it, *out_factor its density's factor. */
 static uint32_t pick_lamp(const transport *t, vec3 from, vec3 normal, float u_pick, vec2 *in_out_u, float *out_factor)
 {
@@ -43,7 +46,7 @@ static float lamp_factor(const transport *t, vec3 from, vec3 normal, uint32_t la
 }
 
 lamp_light direct_light_sample_lamp(const transport *t, eye_worker *worker, const vertex *v, bsdf_lobes lobes,
-                                    float u_pick, vec2 u, int lamp_count, int scatter_count)
+                                    float u_pick, vec2 u, int lamp_count, float scatter_count)
 {
     const lamp_light none = {.radiance = rgb_gray(0.0f)};
     if (!t->has_lights)
@@ -61,14 +64,14 @@ lamp_light direct_light_sample_lamp(const transport *t, eye_worker *worker, cons
     if (rgb_is_black(transmittance))
         return none;
     float pdf = sample.pdf_solid_angle * probability, weight = 1.0f;
-    if (!sample.is_delta && scatter_count > 0)
-        weight = mis_power((float)lamp_count, pdf, (float)scatter_count,
+    if (!sample.is_delta && scatter_count > 0.0f)
+        weight = mis_power((float)lamp_count, pdf, scatter_count,
                            bsdf_pdf(&v->scattering, lobes, BSDF_RADIANCE, sample.direction));
     return (lamp_light){rgb_scale(rgb_mul(reflected, transmittance), weight / pdf), lamp, sample.direction};
 }
 
 rgb direct_light_from_lamp(const transport *t, eye_worker *worker, const vertex *v, bsdf_lobes lobes, float u_pick,
-                           vec2 u, int lamp_count, int scatter_count)
+                           vec2 u, int lamp_count, float scatter_count)
 {
     return direct_light_sample_lamp(t, worker, v, lobes, u_pick, u, lamp_count, scatter_count).radiance;
 }
@@ -81,16 +84,16 @@ static void add_to_group(rgb *by_group, const light *lamp, rgb light_brought)
 }
 
 float direct_light_scatter_weight(const transport *t, vec3 from, vec3 normal, const vertex *on_lamp,
-                                  float pdf_solid_angle, int lamp_count, int scatter_count)
+                                  float pdf_solid_angle, int lamp_count, float scatter_count)
 {
     uint32_t lamp = (uint32_t)(on_lamp->lamp - t->s->lights);
     float pdf = lamp_factor(t, from, normal, lamp, on_lamp->arrived.direction) *
                 light_pdf_from_point(t->s, on_lamp->lamp, from, &on_lamp->hit);
-    return mis_power((float)scatter_count, pdf_solid_angle, (float)lamp_count, pdf);
+    return mis_power(scatter_count, pdf_solid_angle, (float)lamp_count, pdf);
 }
 
 rgb direct_light_escaped(const transport *t, vec3 from, vec3 normal, vec3 direction, float pdf_solid_angle,
-                         int lamp_count, int scatter_count, rgb *by_group)
+                         int lamp_count, float scatter_count, rgb *by_group)
 {
     const scene *s = t->s;
     rgb sum = rgb_gray(0.0f);
@@ -102,7 +105,7 @@ rgb direct_light_escaped(const transport *t, vec3 from, vec3 normal, vec3 direct
             continue;
         float weight = 1.0f;
         if (pdf_solid_angle > 0.0f)
-            weight = mis_power((float)scatter_count, pdf_solid_angle, (float)lamp_count,
+            weight = mis_power(scatter_count, pdf_solid_angle, (float)lamp_count,
                                lamp_factor(t, from, normal, index, direction) * environment_pdf(l, from, direction));
         sum = rgb_add(sum, rgb_scale(radiance, weight));
         add_to_group(by_group, l, rgb_scale(radiance, weight));
@@ -118,6 +121,8 @@ static float variance_of_mean(float sum, float squares, int count)
     float n = (float)count;
     return fmaxf(squares - sum * sum / n, 0.0f) / (n * (n - 1.0f));
 }
+
+static float mean_scatter_count(sample_counts counts) { return (float)counts.scatter * counts.scatter_probability; }
 
 /* The samples that one of the two ways of sampling has taken of a vertex's direct light. */
 typedef struct light_sums {
@@ -142,7 +147,7 @@ static light_sums sample_lamps(const transport *t, eye_worker *worker, const ver
         float u_pick = sampler_2d_of(where, SAMPLE_LIGHT_PICK, path_vertex, count, i).x;
         vec2 u = sampler_2d_of(where, SAMPLE_LIGHT, path_vertex, count, i);
         lamp_light sample =
-            direct_light_sample_lamp(t, worker, v, BSDF_GATHERED, u_pick, u, counts.light, counts.scatter);
+            direct_light_sample_lamp(t, worker, v, BSDF_GATHERED, u_pick, u, counts.light, mean_scatter_count(counts));
         add_sample(&sums, sample.radiance);
         if (rgb_is_black(sample.radiance))
             continue;
@@ -160,8 +165,12 @@ static light_sums sample_scattering(const transport *t, eye_worker *worker, cons
 {
     light_sums sums = {rgb_gray(0.0f), 0.0f};
     const uint32_t count = (uint32_t)counts.scatter;
-    const float share = counts.scatter > 0 ? 1.0f / (float)counts.scatter : 0.0f;
+    const float share = counts.scatter > 0 ? 1.0f / mean_scatter_count(counts) : 0.0f;
     const vec3 from = vertex_position(v), normal = vertex_light_normal(v, BSDF_GATHERED);
+    const float mean_count = mean_scatter_count(counts);
+    if (counts.scatter_probability < 1.0f &&
+        sampler_2d(where, SAMPLE_LOBE, path_vertex + KEY_OF_CHANCE).x >= counts.scatter_probability)
+        return sums;
     for (uint32_t i = 0; i < count; i++) {
         float u_lobe = sampler_2d_of(where, SAMPLE_LOBE, path_vertex, count, i).y; /* x decides the vertex's way on */
         vec2 u = sampler_2d_of(where, SAMPLE_SCATTER_TO_LIGHT, path_vertex, count, i);
@@ -175,7 +184,7 @@ static light_sums sample_scattering(const transport *t, eye_worker *worker, cons
             light_group_sums groups;
             rgb *of_group = light_group_sums_begin(&groups, by_group != NULL);
             rgb escaped = direct_light_escaped(t, from, normal, scattered.direction, scattered.pdf_solid_angle,
-                                               counts.light, counts.scatter, of_group);
+                                               counts.light, mean_count, of_group);
             add_sample(&sums, rgb_mul(rgb_mul(escaped, met.transmittance), scattered.weight));
             rgb reflected = rgb_scale(rgb_mul(met.transmittance, scattered.weight), share);
             *in_out_sky = rgb_add(*in_out_sky, rgb_mul(escaped, reflected));
@@ -187,7 +196,7 @@ static light_sums sample_scattering(const transport *t, eye_worker *worker, cons
         if (rgb_is_black(emitted))
             continue;
         float weight =
-            direct_light_scatter_weight(t, from, normal, &met, scattered.pdf_solid_angle, counts.light, counts.scatter);
+            direct_light_scatter_weight(t, from, normal, &met, scattered.pdf_solid_angle, counts.light, mean_count);
         rgb brought = rgb_scale(rgb_mul(emitted, scattered.weight), weight);
         add_sample(&sums, brought);
         add_to_group(by_group, met.lamp, rgb_scale(brought, share));
@@ -205,11 +214,12 @@ direct_light direct_light_gathered(const transport *t, eye_worker *worker, const
     light_sums scattered = sample_scattering(t, worker, v, where, path_vertex, counts, &direct.from_sky, by_group);
     direct.radiance = rgb_scale(lamps.sum, 1.0f / (float)counts.light);
     if (counts.scatter > 0)
-        direct.radiance = rgb_add(direct.radiance, rgb_scale(scattered.sum, 1.0f / (float)counts.scatter));
+        direct.radiance = rgb_add(direct.radiance, rgb_scale(scattered.sum, 1.0f / mean_scatter_count(counts)));
     /* a single scattered sample stands for its own deviation */
+    const float chance = counts.scatter_probability;
     direct.variance =
         variance_of_mean(rgb_mean(lamps.sum), lamps.squares, counts.light) +
-        (counts.scatter == 1 ? 0.5f * scattered.squares
+        (counts.scatter == 1 ? (1.0f - 0.5f * chance) * scattered.squares / (chance * chance)
                              : variance_of_mean(rgb_mean(scattered.sum), scattered.squares, counts.scatter));
     return direct;
 }

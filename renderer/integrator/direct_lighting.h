@@ -11,9 +11,10 @@
 rgb direct_light_transmittance(const transport *t, eye_worker *worker, scene_ray shadow, const light_sample *sample);
 
 /* One sample towards a lamp picked for the vertex: reflected radiance. lamp_count and scatter_count: how many samples
- * the caller takes of either technique; it divides by lamp_count itself. scatter_count 0: this technique alone. */
+ * the caller takes of either technique, on average; it divides by lamp_count itself. scatter_count 0: this technique
+ * alone. */
 rgb direct_light_from_lamp(const transport *t, eye_worker *worker, const vertex *v, bsdf_lobes lobes, float u_pick,
-                           vec2 u, int lamp_count, int scatter_count);
+                           vec2 u, int lamp_count, float scatter_count);
 
 /* The result of direct_light_from_lamp with the lamp and the direction that were sampled. */
 typedef struct lamp_light {
@@ -22,19 +23,19 @@ typedef struct lamp_light {
     vec3 direction; /* towards it, unit */
 } lamp_light;
 lamp_light direct_light_sample_lamp(const transport *t, eye_worker *worker, const vertex *v, bsdf_lobes lobes,
-                                    float u_pick, vec2 u, int lamp_count, int scatter_count);
+                                    float u_pick, vec2 u, int lamp_count, float scatter_count);
 
 /* The weight of radiance met on a lamp by a ray scattered with the given density at `from`, of vertex_light_normal
  * `normal` there. */
 float direct_light_scatter_weight(const transport *t, vec3 from, vec3 normal, const vertex *on_lamp,
-                                  float pdf_solid_angle, int lamp_count, int scatter_count);
+                                  float pdf_solid_angle, int lamp_count, float scatter_count);
 
 /* The radiance of infinite lights along a ray that meets nothing, weighted as by direct_light_scatter_weight.
  * pdf_solid_angle: the density by which the ray was scattered, or 0 where no sample towards a lamp could stand for it
  * (the eye, smooth lobes), which makes the weight 1. by_group, here and below: the light is added there too, by groups
  * of lamps; or NULL. */
 rgb direct_light_escaped(const transport *t, vec3 from, vec3 normal, vec3 direction, float pdf_solid_angle,
-                         int lamp_count, int scatter_count, rgb *by_group);
+                         int lamp_count, float scatter_count, rgb *by_group);
 
 /* The direct light at a diffuse vertex, estimated by samples towards lamps and by scattering. */
 typedef struct direct_light {

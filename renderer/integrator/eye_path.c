@@ -83,7 +83,7 @@ void eye_path_add_escaped(const transport *t, const eye_path *path, eye_sample *
     rgb *by_group = light_group_sums_begin(&groups, t->wants_groups);
     rgb weight = rgb_scale(path->throughput, path->share);
     rgb escaped = direct_light_escaped(t, path->scattered_from, path->scattered_normal, path->ray.direction,
-                                       path->scattered_pdf, 1, path->scatter_count, by_group);
+                                       path->scattered_pdf, 1, (float)path->scatter_count, by_group);
     float kept = add_light(sample, path, path->wants_parts ? &path->parts : NULL, path->scatterings,
                            rgb_mul(weight, escaped), true);
     eye_sample_add_groups(sample, by_group, rgb_scale(weight, kept));
@@ -97,7 +97,7 @@ void eye_path_add_emitted(const transport *t, const eye_path *path, const vertex
     float weight = path->share;
     if (path->scattered_pdf > 0.0f)
         weight *= direct_light_scatter_weight(t, path->scattered_from, path->scattered_normal, v, path->scattered_pdf,
-                                              1, path->scatter_count);
+                                              1, (float)path->scatter_count);
     rgb seen = rgb_scale(rgb_mul(path->throughput, emitted), weight);
     float kept = add_light(sample, path, path->wants_parts ? &path->parts : NULL, path->scatterings, seen, false);
     if (t->wants_groups)
@@ -110,7 +110,7 @@ void eye_path_add_direct(const transport *t, eye_worker *worker, const eye_path 
     int key = eye_path_key(path);
     float u_pick = sampler_2d(&path->where, SAMPLE_LIGHT_PICK, key).x;
     lamp_light direct = direct_light_sample_lamp(t, worker, v, lobes, u_pick,
-                                                 sampler_2d(&path->where, SAMPLE_LIGHT, key), 1, scatter_count);
+                                                 sampler_2d(&path->where, SAMPLE_LIGHT, key), 1, (float)scatter_count);
     rgb brought = rgb_mul(rgb_scale(path->throughput, path->share), direct.radiance);
     if (rgb_is_black(brought))
         return;

@@ -13,7 +13,7 @@ enum { ROULETTE_AFTER = 4, SHORT_BOUNCES_MAX = 64 };
 static rgb local_light(const transport *t, eye_worker *worker, const vertex *v, float share_seen, rng *random)
 {
     float u_pick = rng_float(random), u_caustic = rng_float(random);
-    rgb direct = direct_light_from_lamp(t, worker, v, BSDF_GATHERED, u_pick, rng_vec2(random), 1, 0);
+    rgb direct = direct_light_from_lamp(t, worker, v, BSDF_GATHERED, u_pick, rng_vec2(random), 1, 0.0f);
     return rgb_add(direct,
                    transport_some_caustics(t, worker, v, transport_caustic_probability(t, share_seen), u_caustic));
 }

@@ -7,9 +7,11 @@ enum { LIGHT_SAMPLES_PER_SCATTER_SAMPLE = 4 };
 
 sample_counts transport_sample_counts(const transport *t, uint32_t lights)
 {
-    sample_counts n = {.light = (int)lights};
+    sample_counts n = {.light = (int)lights, .scatter_probability = 1.0f};
     if (t->can_meet_lights)
         n.scatter = (n.light + LIGHT_SAMPLES_PER_SCATTER_SAMPLE - 1) / LIGHT_SAMPLES_PER_SCATTER_SAMPLE;
+    if (n.scatter == 1)
+        n.scatter_probability = (float)n.light / (float)LIGHT_SAMPLES_PER_SCATTER_SAMPLE;
     return n;
 }
 

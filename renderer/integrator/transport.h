@@ -60,9 +60,11 @@ static inline uint64_t eye_worker_cost(const eye_worker *w)
 
 /* The numbers of samples that direct light takes at a diffuse vertex. */
 typedef struct sample_counts {
-    int light;   /* towards lamps */
-    int scatter; /* by scattering, 0 where that cannot meet a lamp */
+    int light;                 /* towards lamps */
+    int scatter;               /* by scattering, 0 where that cannot meet a lamp */
+    float scatter_probability; /* a single sample by scattering is taken with this probability; else 1 */
 } sample_counts;
+/* There is a sample by scattering for four towards lamps; fewer of these have one by chance. */
 sample_counts transport_sample_counts(const transport *t, uint32_t lights);
 
 /* Follows a ray of unit direction to the first surface that scatters. */

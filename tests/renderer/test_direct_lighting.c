@@ -26,7 +26,7 @@ static mean_sum measure(eye *e, sample_counts counts)
 static void ball(void **state)
 {
     (void)state;
-    static const sample_counts COUNTS[] = {{1, 0}, {1, 1}, {4, 1}, {2, 3}};
+    static const sample_counts COUNTS[] = {{1, 0, 1}, {1, 1, 1}, {1, 1, 0.25f}, {2, 1, 0.5f}, {4, 1, 1}, {2, 3, 1}};
     eye e;
     eye_init(&e, FLOOR "AttributeBegin Translate 0 0 2 AreaLightSource \"diffuse\" \"rgb L\" [1 10 1]"
                        " Shape \"sphere\" \"float radius\" 1 AttributeEnd");
@@ -42,7 +42,7 @@ static void ball(void **state)
 static void sky(void **state)
 {
     (void)state;
-    static const sample_counts COUNTS[] = {{1, 0}, {1, 1}, {4, 1}};
+    static const sample_counts COUNTS[] = {{1, 0, 1}, {1, 1, 1}, {1, 1, 0.25f}, {4, 1, 1}};
     eye e;
     eye_init(&e, FLOOR "LightSource \"infinite\" \"rgb L\" [1 10 1]");
     for (size_t i = 0; i < sizeof COUNTS / sizeof *COUNTS; i++) {
@@ -64,7 +64,7 @@ static void lights_without_extent(void **state)
     eye_init(&e,
              FLOOR "LightSource \"point\" \"rgb I\" [8 8 8] \"point3 from\" [0 0 2]"
                    " LightSource \"distant\" \"rgb L\" [3 3 3] \"point3 from\" [0 1.7320508 1] \"point3 to\" [0 0 0]");
-    mean_sum sum = measure(&e, (sample_counts){1, 0});
+    mean_sum sum = measure(&e, (sample_counts){1, 0, 1});
     assert_mean(&sum, REFLECTANCE / PI * (8.0 / 4.0 + 3.0 * 0.5), 1e-4);
     eye_reset(&e);
 }
@@ -77,7 +77,7 @@ static void nothing_from_behind(void **state)
     eye_init(&e, FLOOR "LightSource \"point\" \"rgb I\" [8 8 8] \"point3 from\" [0 0 2]");
     vertex v = eye_meet(&e, (vec3){0.0f, 0.0f, -0.5f}, (vec3){0.0f, 0.0f, 1.0f});
     sampler where = sampler_make(1, 3, 4, 0, 0);
-    rgb all = direct_light_gathered(&e.t, e.worker, &v, &where, 0, (sample_counts){4, 0}, NULL).radiance;
+    rgb all = direct_light_gathered(&e.t, e.worker, &v, &where, 0, (sample_counts){4, 0, 1}, NULL).radiance;
     assert_true(rgb_is_black(all));
     eye_reset(&e);
 }
