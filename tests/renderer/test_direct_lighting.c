@@ -38,6 +38,33 @@ static void ball(void **state)
     eye_reset(&e);
 }
 
+/* The variance that a vertex tells of its light samples is not less than that of its light. It may be ten times as
+ * large: a lone sample by scattering stands for its own deviation, and those towards lamps are spread evenly. */
+static void variance_is_told(void **state)
+{
+    (void)state;
+    static const sample_counts COUNTS[] = {{2, 1, 0.25f}, {2, 1, 0.5f}, {4, 1, 1}, {4, 3, 1}};
+    eye e;
+    eye_init(&e, FLOOR "AttributeBegin Translate 0 0 2 AreaLightSource \"diffuse\" \"rgb L\" [1 10 1]"
+                       " Shape \"sphere\" \"float radius\" 1.8 AttributeEnd");
+    vertex v = eye_meet(&e, (vec3){0.1f, 0.0f, 0.1f}, (vec3){0.0f, 0.0f, -1.0f});
+    for (size_t i = 0; i < sizeof COUNTS / sizeof *COUNTS; i++) {
+        double sum = 0.0, squares = 0.0, told = 0.0;
+        for (uint32_t k = 0; k < SAMPLES; k++) {
+            sampler where = sampler_make(k, 3, 4, 0, 0);
+            direct_light direct = direct_light_gathered(&e.t, e.worker, &v, &where, 0, COUNTS[i], NULL);
+            double value = (double)rgb_mean(direct.radiance);
+            sum += value / SAMPLES;
+            squares += value * value / SAMPLES;
+            told += (double)direct.variance / SAMPLES;
+        }
+        double times = told / (squares - sum * sum);
+        if (times < 1.0 || times > 12.0)
+            fail_msg("row %zu tells %g times the variance", i, times);
+    }
+    eye_reset(&e);
+}
+
 /* A sky that is the same all over: E = pi L. All of it is noted as the sky's. */
 static void sky(void **state)
 {
@@ -84,7 +111,8 @@ static void nothing_from_behind(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(ball), cmocka_unit_test(sky),
-                                       cmocka_unit_test(lights_without_extent), cmocka_unit_test(nothing_from_behind)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(ball), cmocka_unit_test(variance_is_told),
+                                       cmocka_unit_test(sky), cmocka_unit_test(lights_without_extent),
+                                       cmocka_unit_test(nothing_from_behind)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
