@@ -20,15 +20,19 @@ typedef struct clear_space_plane {
 typedef struct clear_space {
     vec3 center;
     float radius;                          /* of the ball around the point, scene units; 0: nothing is known */
-    float margin;                          /* scene units */
+    float margin;                          /* scene units: the most that rounding makes of its surface's place, and
+                                            * of what lies level with it */
     uint32_t shape_index, primitive_index; /* of the surface itself: a triangle, whose plane is the first one, or a
                                             * whole sphere */
     uint32_t plane_count;
     clear_space_plane plane[CLEAR_SPACE_PLANES];
 } clear_space;
 
+/* Returns whether anything is known at all: not of scenes with instances, curves or many spheres. */
+bool clear_space_is_told(const scene *s);
+
 /* Finds the space at a point of a surface, on the side of its normal, which need not be exact, and no farther than
- * `radius`. Nothing is known of scenes with instances or curves. */
+ * `radius`. Nothing is known where the surface has holes, or a material through which rays pass unbent. */
 void clear_space_find(const scene *s, vec3 center, vec3 normal, float radius, clear_space *out_space);
 
 /* Returns whether a straight line is known to meet nothing. */

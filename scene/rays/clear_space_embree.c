@@ -2,6 +2,7 @@
  * Threads: see clear_space.h. */
 #include "rays/clear_space.h"
 
+#include "material/material.h"
 #include "rays/bvh_embree.h"
 #include "rays/transmittance.h"
 #include "shape/alpha.h"
@@ -10,12 +11,20 @@
 static const float LIFT = 1.0f / 64.0f;
 /* Space with more surfaces than that in it is not looked at further: a query would take longer than it saves. */
 enum { SURFACES_MOST = 64, TRIALS = 3 };
-/* Distances are this much larger than what is known to be clear. */
+/* Distances are this much larger than what is known to be clear, and cosines than what is asked for. */
 static const float ROUNDING = 0x1p-10f;
+/* The sine between two normals that count as the same: a cosine differs by no more, half of ROUNDING. */
+static const float LEVEL_SINE = 0x1p-11f;
+/* What is level with the surface itself may be rounded so many times as much: tiles that lie farther from the origin.
+ */
+static const float LEVEL_MARGINS = 8.0f;
 
 typedef struct search {
     const scene *s;
-    const clear_space *space;
+    clear_space *space;
+    float own_margin;                      /* of the space's own surface */
+    float rounding_most;                   /* of all surfaces, as point_of tells it */
+    float nearest;                         /* distance of the nearest obstacle */
     uint32_t surfaces;                     /* met so far */
     uint32_t shape_index, primitive_index; /* of the nearest obstacle */
 } search;
@@ -59,45 +68,62 @@ static float triangle_distance_squared(vec3 p, triangle t)
     return squared >= 0.0f ? squared : 0.0f; /* of a triangle without area it may be no number */
 }
 
-/* Whether a triangle lies in a plane, rather than below it with some corner in it. */
-static bool is_level(triangle t, vec3 normal)
+/* Position and normal are of no use here. epsilon: how far a surface may be met off its place: a large one, and one
+ * that is far from the origin, farther. */
+static surface_point point_of(const shape *at, uint32_t primitive_index)
 {
-    vec3 n = vec3_cross(vec3_sub(t.b, t.a), vec3_sub(t.c, t.a));
-    float along = vec3_dot(n, normal);
-    return along * along >= 0.999f * vec3_length_squared(n);
+    surface_point point = {.epsilon = at->kind == SHAPE_MESH ? 0.0f : at->as.quadric.epsilon};
+    if (at->kind == SHAPE_MESH)
+        shape_bare_point_at(at, primitive_index, 0.0f, 0.0f, point.position, &point);
+    return point;
 }
 
-/* Whether a surface lies below one of the space's planes. What is level with one may be met in the place of what the
- * plane is of: so it must have the same normal, and no holes. */
-static bool is_below(const clear_space *space, const shape *at, uint32_t primitive_index)
+static float height_of(const shape *at, uint32_t primitive_index, vec3 normal)
 {
+    if (is_sphere(at))
+        return vec3_dot(at->as.quadric.center, normal) + at->as.quadric.uniform_radius;
+    if (at->kind != SHAPE_MESH)
+        return INFINITY;
+    triangle t = triangle_of(&at->as.mesh, primitive_index);
+    return fmaxf(vec3_dot(t.a, normal), fmaxf(vec3_dot(t.b, normal), vec3_dot(t.c, normal)));
+}
+
+/* Whether rays end at all of it. */
+static bool stops_rays(const scene *s, const shape *at)
+{
+    return shape_is_opaque(at) && !material_may_be_interface(s, at->material_index);
+}
+
+/* Whether a surface may be met in the place of the space's own: it lies in the same plane, rather than below it with
+ * some corner in it, and rays end there as well. */
+static bool is_level(const search *q, const shape *at, uint32_t primitive_index, const surface_point *point)
+{
+    const clear_space_plane *p = &q->space->plane[0];
+    return at->kind == SHAPE_MESH && stops_rays(q->s, at) && point->epsilon <= LEVEL_MARGINS * q->own_margin &&
+           height_of(at, primitive_index, p->normal) <= p->height + q->space->margin &&
+           vec3_length_squared(vec3_cross(point->normal, p->normal)) <= LEVEL_SINE * LEVEL_SINE;
+}
+
+/* Whether a surface lies below one of the space's planes, or level with its own, so that its rounding counts. */
+static bool is_below(search *q, const shape *at, uint32_t primitive_index, const surface_point *point)
+{
+    clear_space *space = q->space;
+    const bool has_own_plane = q->s->shapes[space->shape_index].kind == SHAPE_MESH;
     for (uint32_t i = 0; i < space->plane_count; i++) {
         const clear_space_plane *p = &space->plane[i];
-        float highest = INFINITY, most = p->height - space->margin;
-        if (at->kind == SHAPE_MESH) {
-            triangle t = triangle_of(&at->as.mesh, primitive_index);
-            highest = fmaxf(vec3_dot(t.a, p->normal), fmaxf(vec3_dot(t.b, p->normal), vec3_dot(t.c, p->normal)));
-            if (i > 0 || (highest > most && shape_is_opaque(at) && is_level(t, p->normal)))
-                most = p->height + space->margin;
-        } else if (is_sphere(at)) {
-            highest = vec3_dot(at->as.quadric.center, p->normal) + at->as.quadric.uniform_radius;
-            most = p->height + (i > 0 ? space->margin : -space->margin);
-        }
-        if (highest <= most)
+        const float slack = i == 0 && has_own_plane ? -space->margin : space->margin;
+        if (height_of(at, primitive_index, p->normal) + point->epsilon <= p->height + slack)
             return true;
     }
-    return false;
+    if (!has_own_plane || !is_level(q, at, primitive_index, point))
+        return false;
+    space->margin = fmaxf(space->margin, point->epsilon);
+    return true;
 }
 
-/* Returns the distance from the centre to a surface that does not lie below the space; INFINITY: it does, or is the
- * space's own. */
-static float distance_to_obstacle(const search *q, uint32_t shape_index, uint32_t primitive_index)
+/* Returns the distance from the centre to a surface. */
+static float distance_to(const search *q, const shape *at, uint32_t primitive_index)
 {
-    const clear_space *space = q->space;
-    const shape *at = &q->s->shapes[shape_index];
-    bool is_own = shape_index == space->shape_index && (primitive_index == space->primitive_index || is_sphere(at));
-    if (is_own || is_below(space, at, primitive_index))
-        return INFINITY;
     if (at->kind == SHAPE_MESH)
         return sqrtf(triangle_distance_squared(q->space->center, triangle_of(&at->as.mesh, primitive_index)));
     if (is_sphere(at))
@@ -108,17 +134,32 @@ static float distance_to_obstacle(const search *q, uint32_t shape_index, uint32_
     return sqrtf(vec3_distance_squared(q->space->center, vec3_min(vec3_max(q->space->center, low), high)));
 }
 
-/* Makes the ball smaller where a surface reaches into it. Returns whether it does. */
-static bool meet_surface(search *q, uint32_t shape_index, uint32_t primitive_index, float *in_out_radius)
+/* The same, less what rounding makes of it, to one that does not lie below the space; INFINITY: it does, or is the
+ * space's own. */
+static float distance_to_obstacle(search *q, uint32_t shape_index, uint32_t primitive_index)
+{
+    const clear_space *space = q->space;
+    const shape *at = &q->s->shapes[shape_index];
+    const surface_point point = point_of(at, primitive_index);
+    bool is_own = shape_index == space->shape_index && (primitive_index == space->primitive_index || is_sphere(at));
+    if (is_own || is_below(q, at, primitive_index, &point))
+        return INFINITY;
+    return fmaxf(distance_to(q, at, primitive_index) - point.epsilon, 0.0f);
+}
+
+/* Makes the ball smaller where a surface reaches into it. Returns whether it does. out_radius: of where surfaces may be
+ * that matter. */
+static bool meet_surface(search *q, uint32_t shape_index, uint32_t primitive_index, float *out_radius)
 {
     float distance = 0.0f;
     if (++q->surfaces <= SURFACES_MOST)
         distance = distance_to_obstacle(q, shape_index, primitive_index);
-    if (!(distance < *in_out_radius))
+    if (!(distance < q->nearest))
         return false;
     q->shape_index = shape_index;
     q->primitive_index = primitive_index;
-    *in_out_radius = distance;
+    q->nearest = distance;
+    *out_radius = distance + q->rounding_most;
     return true;
 }
 
@@ -131,8 +172,10 @@ static bool meet_primitive(struct RTCPointQueryFunctionArguments *arguments)
 /* Returns the distance to the nearest obstacle, at most `radius`. */
 static float find_obstacle(search *q, float radius)
 {
-    struct RTCPointQuery query = {q->space->center.x, q->space->center.y, q->space->center.z, 0.0f, radius};
+    struct RTCPointQuery query = {
+        .x = q->space->center.x, .y = q->space->center.y, .z = q->space->center.z, .radius = radius + q->rounding_most};
     struct RTCPointQueryContext context;
+    q->nearest = radius;
     rtcInitPointQueryContext(&context);
     rtcPointQuery(q->s->bvh->scene, &query, &context, meet_primitive, q);
     for (uint32_t i = 0; i < q->s->bvh->sphere_count; i++) {
@@ -141,10 +184,11 @@ static float find_obstacle(search *q, float radius)
         if (vec3_distance_squared(q->space->center, sphere->center) < reach * reach)
             meet_surface(q, q->s->bvh->spheres[i], 0, &query.radius);
     }
-    return query.radius;
+    return q->nearest;
 }
 
-/* A plane between the centre and an obstacle, which lies below it. Returns false where there is none. */
+/* A plane between the centre and an obstacle, which lies below it, with its rounding. Returns false where there is
+ * none. */
 static bool part_from_obstacle(const search *q, clear_space_plane *out_plane)
 {
     const shape *at = &q->s->shapes[q->shape_index];
@@ -152,17 +196,15 @@ static bool part_from_obstacle(const search *q, clear_space_plane *out_plane)
         vec3 away = vec3_sub(q->space->center, at->as.quadric.center);
         float distance = vec3_length(away), radius = at->as.quadric.uniform_radius;
         out_plane->normal = vec3_scale(away, 1.0f / distance);
-        out_plane->height = vec3_dot(at->as.quadric.center, out_plane->normal) + radius;
+        out_plane->height = height_of(at, 0, out_plane->normal) + at->as.quadric.epsilon;
         return distance > radius;
     }
     if (at->kind != SHAPE_MESH)
         return false;
-    triangle t = triangle_of(&at->as.mesh, q->primitive_index);
-    vec3 n = vec3_cross(vec3_sub(t.b, t.a), vec3_sub(t.c, t.a));
-    float length = vec3_length(n);
-    n = vec3_face_forward(vec3_scale(n, 1.0f / length), vec3_sub(q->space->center, t.a));
-    *out_plane = (clear_space_plane){n, fmaxf(vec3_dot(n, t.a), fmaxf(vec3_dot(n, t.b), vec3_dot(n, t.c)))};
-    return length > 0.0f;
+    const surface_point point = point_of(at, q->primitive_index);
+    out_plane->normal = vec3_face_forward(point.normal, vec3_sub(q->space->center, point.position));
+    out_plane->height = height_of(at, q->primitive_index, out_plane->normal) + point.epsilon;
+    return vec3_length_squared(point.normal) > 0.0f;
 }
 
 /* Finds the surface itself. */
@@ -175,7 +217,7 @@ static bool find_own_surface(const scene *s, vec3 center, vec3 normal, float rad
         return false;
     const shape *at = &s->shapes[hit.shape_index];
     vec3 n = vec3_face_forward(hit.geometric_normal, normal);
-    if (!shape_is_opaque(at) || !(vec3_dot(n, normal) > 0.9f))
+    if (!stops_rays(s, at) || !(vec3_dot(n, normal) > 0.9f))
         return false;
     if (is_sphere(at) ? !(vec3_dot(vec3_sub(center, at->as.quadric.center), n) > 0.0f) : at->kind != SHAPE_MESH)
         return false;
@@ -192,18 +234,24 @@ static bool find_own_surface(const scene *s, vec3 center, vec3 normal, float rad
 /* Finds the ball, and the planes that part it from obstacles. Returns false where there are too many surfaces. */
 static bool find_ball(const scene *s, float radius, clear_space *space)
 {
-    search q = {.s = s, .space = space};
+    search q = {.s = s,
+                .space = space,
+                .own_margin = space->margin,
+                .rounding_most =
+                    fmaxf(vec3_max_abs(s->bounds_min), vec3_max_abs(s->bounds_max)) * SHAPE_EPSILON_RELATIVE};
     while ((space->radius = find_obstacle(&q, radius)) < radius && space->plane_count < CLEAR_SPACE_PLANES &&
            q.surfaces <= SURFACES_MOST && part_from_obstacle(&q, &space->plane[space->plane_count]))
         space->plane_count++;
     return q.surfaces <= SURFACES_MOST;
 }
 
+bool clear_space_is_told(const scene *s) { return s->bvh->tells_what_is_near; }
+
 void clear_space_find(const scene *s, vec3 center, vec3 normal, float radius, clear_space *out_space)
 {
     clear_space own, space;
     *out_space = (clear_space){0};
-    if (!s->bvh->tells_what_is_near || !find_own_surface(s, center, normal, radius, &own))
+    if (!clear_space_is_told(s) || !find_own_surface(s, center, normal, radius, &own))
         return;
     for (int trial = 0; trial < TRIALS; trial++, radius *= 0.25f) {
         space = own;
@@ -263,14 +311,18 @@ static bool find_meeting(const shape *at, const clear_space *space, vec3 origin,
     return true;
 }
 
-/* Whether a point in a triangle's plane lies in it, and off its edges by a share of their heights. */
-static bool is_inside(triangle t, vec3 normal, vec3 point)
+/* Whether a point in a triangle's plane lies in it, and off its edges by the margin and a share of their heights. */
+static bool is_inside(triangle t, vec3 normal, vec3 point, float margin)
 {
-    vec3 to_a = vec3_sub(t.a, point), to_b = vec3_sub(t.b, point), to_c = vec3_sub(t.c, point);
+    const vec3 corner[3] = {t.a, t.b, t.c};
     float all = vec3_dot(vec3_cross(vec3_sub(t.b, t.a), vec3_sub(t.c, t.a)), normal), sign = all < 0.0f ? -1.0f : 1.0f;
-    float of_a = vec3_dot(vec3_cross(to_b, to_c), normal), of_b = vec3_dot(vec3_cross(to_c, to_a), normal),
-          of_c = vec3_dot(vec3_cross(to_a, to_b), normal);
-    return fminf(of_a * sign, fminf(of_b * sign, of_c * sign)) > ROUNDING * fabsf(all);
+    bool is_in = true;
+    for (int i = 0; i < 3 && is_in; i++) { /* areas, twice */
+        vec3 from = corner[i], to = corner[(i + 1) % 3];
+        float beside = sign * vec3_dot(vec3_cross(vec3_sub(from, point), vec3_sub(to, point)), normal);
+        is_in = beside > ROUNDING * fabsf(all) + margin * sqrtf(vec3_distance_squared(from, to));
+    }
+    return is_in;
 }
 
 bool clear_space_ends_ray(const scene *s, const clear_space *space, vec3 origin, vec3 direction, float farthest,
@@ -285,7 +337,7 @@ bool clear_space_ends_ray(const scene *s, const clear_space *space, vec3 origin,
     vec3 end = vec3_add_scaled(origin, direction, distance);
     return distance > margin && distance < (1.0f - ROUNDING) * farthest - margin &&
            -vec3_dot(normal, direction) > min_cos + ROUNDING && is_within(space, end, is_plane) &&
-           (!is_plane || is_inside(triangle_of(&at->as.mesh, space->primitive_index), normal, end));
+           (!is_plane || is_inside(triangle_of(&at->as.mesh, space->primitive_index), normal, end, margin));
 }
 
 /* Whether a disc in a triangle's plane lies in it. */

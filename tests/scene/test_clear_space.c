@@ -82,10 +82,228 @@ static void answers_are_those_of_rays(void **state)
     test_run_reset(&r);
 }
 
+#define PLATE            "Shape \"bilinearmesh\" \"point3 P\" [0 0 0  1 0 0  0 0 1  1 0 1]\n"
+#define FLOOR            "Shape \"bilinearmesh\" \"point3 P\" [0 0 0  10 0 0  0 0 10  10 0 10]\n"
+#define BALL(at, radius) "AttributeBegin Translate " at " Shape \"sphere\" \"float radius\" " radius " AttributeEnd\n"
+#define FOG(corners)                                                                                                   \
+    "MakeNamedMedium \"fog\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [.1 .1 .1] \"rgb sigma_s\" [0 0 0]\n"     \
+    "AttributeBegin MediumInterface \"fog\" \"\" Material \"interface\"\n"                                             \
+    "Shape \"trianglemesh\" \"point3 P\" [" corners "] \"integer indices\" [0 1 2 0 2 3] AttributeEnd\n"
+
+/* Points are those that are seen along `toward`, any way where that is 0, from beside a line between two points. */
+typedef struct place {
+    const char *what, *text;
+    vec3 first, last, beside, toward;
+    float radius; /* of the spaces */
+    float near;   /* what rays are aimed at is no farther from a point */
+    bool tells_much;
+} place;
+
+static const place PLACES[] = {
+    {"a mix with an interface",
+     "MakeNamedMaterial \"a\" \"string type\" \"interface\" MakeNamedMaterial \"b\" \"string type\" \"diffuse\"\n"
+     "MakeNamedMaterial \"m\" \"string type\" \"mix\" \"string materials\" [\"a\" \"b\"] \"float amount\" 0.5\n"
+     "NamedMaterial \"m\"\n" FLOOR,
+     {1, 1, 5},
+     {9, 1, 5},
+     {0, 0, 8},
+     {0, -1, 0},
+     1.0f,
+     0.3f,
+     false},
+    {"an interface on the floor",
+     FOG("2 0 2  8 0 2  8 0 8  2 0 8") FLOOR,
+     {1, 1, 5},
+     {9, 1, 5},
+     {0, 0, 8},
+     {0, -1, 0},
+     1.0f,
+     0.3f,
+     false},
+    {"the same behind it",
+     FLOOR FOG("2 0 2  8 0 2  8 0 8  2 0 8"),
+     {1, 1, 5},
+     {9, 1, 5},
+     {0, 0, 8},
+     {0, -1, 0},
+     1.0f,
+     0.3f,
+     false},
+    {"the same a little above it",
+     FLOOR FOG("2 0.0001 2  8 0.0001 2  8 0.0001 8  2 0.0001 8"),
+     {1, 1, 5},
+     {9, 1, 5},
+     {0, 0, 8},
+     {0, -1, 0},
+     1.0f,
+     0.3f,
+     false},
+    {"a plate over a plain that is a sphere",
+     "Shape \"bilinearmesh\" \"point3 P\" [0 0.3 0  1 0.3 0  0 0.5 1  1 0.5 1]\n" BALL("0 -100000 0", "100000"),
+     {.5f, .05f, .5f},
+     {.5f, .05f, .5f},
+     {.8f, .1f, .8f},
+     {0, 1, 0},
+     0.8f,
+     0.3f,
+     false},
+    {"a plate beside such a sphere",
+     PLATE BALL("-70710 10 -70710", "100000"),
+     {.5f, .5f, .5f},
+     {.5f, .5f, .5f},
+     {.9f, 0, .9f},
+     {0, -1, 0},
+     0.8f,
+     0.3f,
+     false},
+    {"a ball on a hill",
+     BALL("0 1 0", "1") BALL("0 -1000 0", "1000"),
+     {0, .5f, 0},
+     {0, .5f, 0},
+     {4, 1, 4},
+     {0, 0, 0},
+     0.8f,
+     0.3f,
+     true},
+    {"a strip at 1000",
+     "Shape \"trianglemesh\" \"point3 P\" [1000 0 0  1005 0 7  1005.02 0 7] \"integer indices\" [0 1 2]\n",
+     {1001.506f, 1, 2.1f},
+     {1004.516f, 1, 6.3f},
+     {.02f, 0, 0},
+     {0, -1, 0},
+     3.0f,
+     0.03f,
+     false},
+    {"a strip at 10000",
+     "Shape \"trianglemesh\" \"point3 P\" [10000 0 0  10005 0 7  10005.02 0 7] \"integer indices\" [0 1 2]\n",
+     {10001.506f, 1, 2.1f},
+     {10004.516f, 1, 6.3f},
+     {.02f, 0, 0},
+     {0, -1, 0},
+     3.0f,
+     0.03f,
+     false},
+    {"a tilted chip within the rounding of a floor at 1000",
+     "Shape \"bilinearmesh\" \"point3 P\" [990 0 0  1010 0 0  990 0 10  1010 0 10]\n"
+     "Shape \"trianglemesh\" \"point3 P\" [1000 -.004 5  1000.3 .005 5  1000 -.004 5.3] \"integer indices\" [0 1 2]\n",
+     {1000.1f, 1, 5.1f},
+     {1000.1f, 1, 5.1f},
+     {.6f, 0, .6f},
+     {0, -1, 0},
+     1.0f,
+     0.4f,
+     false},
+    {"tiles around the origin",
+     "Shape \"trianglemesh\" \"point3 P\" [-3 0 -3  .1 0 -3  3 0 -3  -3 0 .1  .1 0 .1  3 0 .1  -3 0 3  .1 0 3  3 0 3]\n"
+     "\"integer indices\" [0 1 3 3 1 4 1 2 4 4 2 5 3 4 6 6 4 7 4 5 7 7 5 8]\n",
+     {0, 1, 0},
+     {0, 1, 0},
+     {5, 0, 5},
+     {0, -1, 0},
+     1.0f,
+     0.3f,
+     true},
+};
+
+typedef struct tally {
+    uint64_t lines, wrong_lines, ends, wrong_ends; /* that are known */
+} tally;
+
+/* A line somewhere in the space, or one that just misses what a plane parts from it. */
+static void ask_of_line(const scene *s, const place *p, const clear_space *space, vec3 normal, int k, rng *random,
+                        tally *t)
+{
+    vec3 ends[2];
+    float reach = p->radius * rng_float(random);
+    for (int i = 0; i < 2; i++) {
+        ends[i] =
+            vec3_add_scaled(vec3_add_scaled(space->center, normal, 0.02f * reach), random_direction(random), reach);
+        if (k % 2 == 0 || space->plane_count == 0)
+            continue;
+        const clear_space_plane *plane = &space->plane[(uint32_t)k / 2 % space->plane_count];
+        float height = plane->height + 2.0f * space->margin + 0.01f * p->radius * rng_float(random);
+        ends[i] = vec3_add_scaled(ends[i], plane->normal, height - vec3_dot(ends[i], plane->normal));
+    }
+    if (!clear_space_has_line(s, space, ends[0], ends[1]))
+        return;
+    t->lines++;
+    t->wrong_lines += scene_is_blocked(s, scene_ray_make(ends[0], vec3_sub(ends[1], ends[0])), 1.0f);
+}
+
+/* A ray down, or one that comes as slanted as it may, to a place near the point. */
+static void ask_of_end(const scene *s, const place *p, const clear_space *space, vec3 normal, int k, rng *random,
+                       tally *t)
+{
+    static const float MIN_COS = 0.5f;
+    surface_hit hit;
+    frame f = frame_from_z(normal);
+    float cosine = k % 2 ? MIN_COS + 0.03f * rng_float(random) : 1.0f - 0.4f * rng_float(random), turn_sin, turn_cos;
+    float sine = sqrtf(1.0f - cosine * cosine);
+    sincos_turns(rng_float(random), &turn_sin, &turn_cos);
+    vec3 down = vec3_normalize(
+        vec3_add_scaled(vec3_add_scaled(vec3_scale(f.x, sine * turn_cos), f.y, sine * turn_sin), normal, -cosine));
+    vec3 aim = random_direction(random);
+    aim = vec3_add_scaled(aim, normal, -vec3_dot(aim, normal));
+    aim = vec3_add_scaled(space->center, aim, p->near);
+    vec3 from = vec3_add_scaled(aim, down, -0.5f * p->radius * rng_float(random));
+    if (!clear_space_ends_ray(s, space, from, down, p->radius, MIN_COS))
+        return;
+    t->ends++;
+    t->wrong_ends += !scene_find_surface(s, scene_ray_make(from, down), p->radius, &hit) ||
+                     !(fabsf(vec3_dot(hit.geometric_normal, down)) > MIN_COS);
+}
+
+static tally ask_in_place(const place *p, uint64_t *out_known)
+{
+    enum { POINTS = 1000 / FEWER, QUESTIONS = 200 };
+    tally t = {0};
+    test_run r;
+    test_run_init(&r, 1);
+    scene *s = test_scene_create(&r, p->text);
+    rng random = test_random(5);
+    *out_known = 0;
+    for (int i = 0; i < POINTS; i++) {
+        surface_hit hit;
+        clear_space space;
+        vec3 from = vec3_add_scaled(p->first, vec3_sub(p->last, p->first), rng_float(&random));
+        from.x += p->beside.x * (rng_float(&random) - 0.5f);
+        from.y += p->beside.y * (rng_float(&random) - 0.5f);
+        from.z += p->beside.z * (rng_float(&random) - 0.5f);
+        vec3 toward = vec3_length_squared(p->toward) > 0.0f ? p->toward : random_direction(&random);
+        if (!scene_find_surface(s, scene_ray_make(from, toward), INFINITY, &hit))
+            continue;
+        vec3 normal = vec3_face_forward(hit.geometric_normal, vec3_negate(toward));
+        clear_space_find(s, hit.position, normal, p->radius, &space);
+        *out_known += space.radius > 0.0f;
+        for (int k = 0; space.radius > 0.0f && k < QUESTIONS; k++) {
+            ask_of_line(s, p, &space, normal, k, &random, &t);
+            ask_of_end(s, p, &space, normal, k, &random, &t);
+        }
+    }
+    scene_destroy(s);
+    test_run_reset(&r);
+    return t;
+}
+
+static void answers_are_right_in_odd_places(void **state)
+{
+    (void)state;
+    uint64_t wrong = 0;
+    for (size_t i = 0; i < sizeof PLACES / sizeof *PLACES; i++) {
+        uint64_t known;
+        tally t = ask_in_place(&PLACES[i], &known);
+        print_message("%s: %llu spaces; wrong: %llu of %llu lines, %llu of %llu ends\n", PLACES[i].what,
+                      (unsigned long long)known, (unsigned long long)t.wrong_lines, (unsigned long long)t.lines,
+                      (unsigned long long)t.wrong_ends, (unsigned long long)t.ends);
+        wrong += t.wrong_lines + t.wrong_ends;
+        assert_true(!PLACES[i].tells_much || (known > 0 && t.lines > 50 * known && t.ends > 100 * known));
+    }
+    assert_int_equal(wrong, 0);
+}
+
 static void nothing_is_known_where_not_all_can_be_found(void **state)
 {
     (void)state;
-    static const char FLOOR[] = "Shape \"bilinearmesh\" \"point3 P\" [0 0 0  10 0 0  0 0 10  10 0 10]\n";
     static const char *const BESIDE[] = {
         "", /* there it is */
         "Shape \"curve\" \"point3 P\" [8 1 8  8 2 8  8 3 8  8 4 8] \"float width\" 0.1\n",
@@ -99,6 +317,7 @@ static void nothing_is_known_where_not_all_can_be_found(void **state)
         clear_space space;
         clear_space_find(s, (vec3){3.0f, 0.0f, 2.0f}, (vec3){0.0f, 1.0f, 0.0f}, 1.0f, &space);
         assert_int_equal(space.radius > 0.9f, i == 0);
+        assert_int_equal(clear_space_is_told(s), i == 0);
         assert_true(i == 0 || space.radius == 0.0f);
         /* nor off any surface */
         clear_space_find(s, (vec3){3.0f, 0.1f, 2.0f}, (vec3){0.0f, 1.0f, 0.0f}, 1.0f, &space);
@@ -150,6 +369,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(answers_are_those_of_rays),
+        cmocka_unit_test(answers_are_right_in_odd_places),
         cmocka_unit_test(nothing_is_known_where_not_all_can_be_found),
         cmocka_unit_test(crowds_are_left_alone),
     };
