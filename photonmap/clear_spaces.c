@@ -8,7 +8,7 @@ enum { EMPTY, BUSY, READY };
 
 clear_spaces *clear_spaces_create(const scene *s, const photon_block *blocks, uint64_t block_count, float radius)
 {
-    clear_spaces *c = calloc(1, sizeof *c + (size_t)block_count * sizeof c->entries[0]);
+    clear_spaces *c = calloc(1, (size_t)clear_spaces_bytes(block_count));
     if (c)
         c->s = s, c->blocks = blocks, c->radius = radius;
     return c;

@@ -22,7 +22,13 @@ typedef struct clear_spaces {
     clear_spaces_entry entries[];
 } clear_spaces;
 
-/* Zeroed memory, of which only the pages that are asked for are taken. NULL when out of memory. Freed by free(). */
+/* Returns the bytes of the spaces of a map with so many blocks. */
+static inline uint64_t clear_spaces_bytes(uint64_t block_count)
+{
+    return sizeof(clear_spaces) + block_count * sizeof(clear_spaces_entry);
+}
+
+/* Zeroed memory, whose pages are taken when they are first asked for. NULL when out of memory. Freed by free(). */
 clear_spaces *clear_spaces_create(const scene *s, const photon_block *blocks, uint64_t block_count, float radius);
 
 /* Returns the space around a block's first photon. spare: room for one that is found just now. */

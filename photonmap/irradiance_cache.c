@@ -10,6 +10,8 @@
 #include <stdlib.h>
 
 enum { PRECOMPUTE_BLOCK = 512 };
+/* What a rendering takes for each worker later, and more. */
+static const uint64_t SPARE_BYTES_PER_WORKER = (uint64_t)12 << 20;
 /* Reading a thread's CPU time is a system call, so that one of this many estimates is timed. */
 enum { TIMED_EVERY = 16 };
 
@@ -46,10 +48,11 @@ ag_status irradiance_cache_create(photon_map *map, irradiance_cache_mode mode, u
         store_relaxed_u64(&c.shown[i].computed, 0);
         is_complete = scratch_create(&c.scratch[i], map);
     }
-    if (!is_complete || photon_map_make_spaces(map) != AG_OK) {
+    if (!is_complete) {
         irradiance_cache_reset(&c);
         return AG_ERROR_MEMORY;
     }
+    photon_map_make_spaces(map, worker_count * SPARE_BYTES_PER_WORKER);
     if (map->has_been_cached)
         c.ready_before = irradiance_cache_distinct(&c);
     map->has_been_cached = true;

@@ -156,8 +156,7 @@ void photon_map_reset(photon_map *map)
     map->blocks = NULL;
     free(map->reaches);
     map->reaches = NULL;
-    free(map->spaces);
-    map->spaces = NULL;
+    photon_map_drop_spaces(map);
     photon_set_reset(&map->set);
 }
 
@@ -169,19 +168,37 @@ uint64_t photon_map_bytes(const photon_map *map)
                  photon_tree_bytes(&map->irradiance_photons);
     if (map->reaches)
         bytes += map->irradiance_photons.count * sizeof *map->reaches;
+    if (map->spaces)
+        bytes += clear_spaces_bytes(photon_block_count(map->set.count));
     return bytes;
 }
 
 /* Discs of estimates, which are the largest thing to be asked for, mostly reach so far. */
 static const float SPACE_RADII = 3.0f;
 
-ag_status photon_map_make_spaces(photon_map *map)
+uint64_t photon_map_spaces_bytes(const scene *s, uint64_t photon_count)
 {
-    if (map->spaces || !map->surfaces || map->set.count == 0)
-        return AG_OK;
+    return photon_count > 0 && clear_space_is_told(s) ? clear_spaces_bytes((photon_count - 1) / PHOTON_BLOCK_LANES + 1)
+                                                      : 0;
+}
+
+void photon_map_make_spaces(photon_map *map, uint64_t spare)
+{
+    if (map->spaces || !map->surfaces || photon_map_spaces_bytes(map->surfaces, map->set.count) == 0)
+        return;
     map->spaces = clear_spaces_create(map->surfaces, map->blocks, photon_block_count(map->set.count),
                                       SPACE_RADII * map->mean_radius);
-    return map->spaces ? AG_OK : AG_ERROR_MEMORY;
+    /* a limit of memory counts what is reserved, too; without spaces the picture is the same */
+    void *volatile later = malloc((size_t)spare); /* volatile: or the compiler takes it to succeed */
+    if (!later)
+        photon_map_drop_spaces(map);
+    free(later);
+}
+
+void photon_map_drop_spaces(photon_map *map)
+{
+    free(map->spaces);
+    map->spaces = NULL;
 }
 
 uint32_t photon_map_scratch_count(const photon_map *map) { return photon_neighbors_capacity(map->nearest + 1); }

@@ -40,7 +40,8 @@ typedef struct photon_map {
     /* Radii and exponents, on which all estimates depend, are rounded, and an irradiance is rounded by its photon's
      * position, so that both stay the same where a few photons come and go. */
     bool is_steady;
-    clear_spaces *spaces; /* owned: of the leaves of `tree`, on its surfaces; NULL until a cache is made over the map */
+    clear_spaces *spaces; /* owned: of the leaves of `tree`, on its surfaces; NULL until a cache is made over the map,
+                             and where nothing is known or memory is short: only rays are spared by them */
     float *reaches; /* owned, of a steady map: for each irradiance photon whose slot is ready irradiance_reach; 0: not
                        known */
 } photon_map;
@@ -73,12 +74,16 @@ static inline irradiance_slot *photon_map_slot(const photon_map *map, uint32_t i
     return photon_block_slot(map->irradiance_photons.blocks, irradiance_photon);
 }
 
-/* Returns the bytes of the photons, the irradiance photons and the trees. */
+/* Returns the bytes of the photons, the irradiance photons, the trees and the clear spaces. */
 uint64_t photon_map_bytes(const photon_map *map);
 
-/* Makes room for the clear spaces, where the map has photons on surfaces, unless it is there. Errors:
- * AG_ERROR_MEMORY. */
-ag_status photon_map_make_spaces(photon_map *map);
+/* Makes room for the clear spaces, unless it is there, where the map has photons on surfaces, something is known
+ * of what is near them, and `spare` bytes more could be had, for what else is to come. */
+void photon_map_make_spaces(photon_map *map, uint64_t spare);
+void photon_map_drop_spaces(photon_map *map);
+
+/* Returns the bytes that photon_map_make_spaces takes for that many photons on the surfaces of s. */
+uint64_t photon_map_spaces_bytes(const scene *s, uint64_t photon_count);
 
 /* Returns the number of neighbours that a worker's scratch memory holds. */
 uint32_t photon_map_scratch_count(const photon_map *map);

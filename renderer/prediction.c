@@ -110,21 +110,25 @@ static ag_status predict_memory(ag_context *context, const scene *s, const ag_re
     if (status != AG_OK)
         return status;
     double photons = 0.0, thread = PATH_BYTES_PER_THREAD;
+    uint64_t spaces = 0;
     if (has_map) {
         const double fraction = (double)settings->irradiance_fraction;
         photons = (double)settings->photon_count * (fraction < 1.0 ? 1.0 + fraction : 1.0);
         photons += maps_have_caustics(s, settings) ? (double)settings->caustic_photon_count : 0.0;
+        spaces = photon_map_spaces_bytes(s, settings->photon_count);
         thread = BYTES_PER_THREAD + sizeof(sample_queue) + sizeof(gather_batch);
     }
     out->memory_scene_bytes = resident_bytes();
-    out->memory_photon_bytes = (uint64_t)(BYTES_PER_PHOTON * photons + (has_map ? aim_bytes_of(s, settings) : 0.0));
+    out->memory_photon_bytes =
+        (uint64_t)(BYTES_PER_PHOTON * photons + (has_map ? aim_bytes_of(s, settings) : 0.0)) + spaces;
     out->memory_thread_bytes = (uint64_t)(thread * threads);
     out->memory_film_bytes = (uint64_t)(film * pixels * (settings->photon_map_file ? 2.0 : 1.0)); /* and its copy */
     out->memory_host_bytes = context->host_bytes;
     out->memory_file_bytes = (uint64_t)(file * pixels);
     const uint64_t rendering = out->memory_photon_bytes + out->memory_thread_bytes;
-    out->memory_needed_bytes = out->memory_scene_bytes + out->memory_film_bytes + out->memory_host_bytes +
-                               (rendering > out->memory_file_bytes ? rendering : out->memory_file_bytes);
+    const uint64_t most = rendering > out->memory_file_bytes ? rendering : out->memory_file_bytes;
+    out->memory_needed_bytes = out->memory_scene_bytes + out->memory_film_bytes + out->memory_host_bytes + most;
+    out->memory_optional_bytes = most - out->memory_file_bytes < spaces ? most - out->memory_file_bytes : spaces;
     const uint64_t before = peak_memory_bytes();
     out->memory_peak_bytes = out->memory_needed_bytes > before ? out->memory_needed_bytes : before;
     return AG_OK;

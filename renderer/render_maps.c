@@ -215,8 +215,6 @@ ag_status maps_create(ag_context *context, const scene *s, const ag_render_setti
     phase_begin guiding = context_begin_phase();
     AG_TRY(incident_light_create(&context->run, &m->global.tree, settings->gather_guiding, &m->incident));
     context_add_to_phase(context, AG_PHASE_MAP, guiding);
-    statistics->photon_bytes +=
-        photon_map_bytes(&m->global) + photon_map_bytes(&m->caustic) + incident_light_bytes(&m->incident);
     log_message(context->log, AG_LOG_INFO, "estimates: %u nearest, %.4g at most, %.4g where light is spread evenly",
                 m->global.nearest, (double)m->global.max_radius, (double)m->global.mean_radius);
 
@@ -227,6 +225,8 @@ ag_status maps_create(ag_context *context, const scene *s, const ag_render_setti
     status = irradiance_cache_create(&m->global, modes[settings->cache], statistics->threads, &m->cache);
     if (status == AG_OK && m->file.is_shared)
         irradiance_cache_share(&m->cache, &m->file.owners);
+    statistics->photon_bytes +=
+        photon_map_bytes(&m->global) + photon_map_bytes(&m->caustic) + incident_light_bytes(&m->incident);
     statistics->irradiance_ready += m->cache.ready_before;
     context_add_to_phase(context, AG_PHASE_MAP, caching);
     if (status == AG_OK && settings->cache == AG_CACHE_PRECOMPUTE) {

@@ -52,14 +52,15 @@ void memory_limit_lift(void)
 
 bool memory_limit_holds(uint64_t bytes, const ag_prediction *p)
 {
-    if (p->memory_needed_bytes <= bytes) /* the peak may be another picture's */
+    const uint64_t optional = p->memory_optional_bytes, least = p->memory_needed_bytes - optional;
+    if (least <= bytes) /* the peak may be another picture's */
         return true;
     fprintf(
         stderr,
         "afterglow: error: the picture needs about %.1f MB of memory, and --memory allows %.1f MB: the program and "
         "the scene %.1f MB, photon maps %.1f, threads %.1f, film %.1f, showing it meanwhile %.1f, a file on its way %.1f\n",
-        (double)p->memory_needed_bytes / 1e6, (double)bytes / 1e6, (double)p->memory_scene_bytes / 1e6,
-        (double)p->memory_photon_bytes / 1e6, (double)p->memory_thread_bytes / 1e6, (double)p->memory_film_bytes / 1e6,
-        (double)p->memory_host_bytes / 1e6, (double)p->memory_file_bytes / 1e6);
+        (double)least / 1e6, (double)bytes / 1e6, (double)p->memory_scene_bytes / 1e6,
+        (double)(p->memory_photon_bytes - optional) / 1e6, (double)p->memory_thread_bytes / 1e6,
+        (double)p->memory_film_bytes / 1e6, (double)p->memory_host_bytes / 1e6, (double)p->memory_file_bytes / 1e6);
     return false;
 }

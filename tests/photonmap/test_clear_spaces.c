@@ -1,6 +1,7 @@
-/* test_clear_spaces.c: any number of threads that ask for the same spaces at once get what one alone would find.
+/* test_clear_spaces.c: any number of threads that ask for the same spaces at once get what one alone would find; a map
+ * goes without them where they are of no use, or memory is short.
  * Threads: eight, more than there are processors. */
-#include "clear_spaces.h"
+#include "photon_map.h"
 
 #include "fixtures/test_scene.h"
 
@@ -76,8 +77,44 @@ static void all_threads_get_the_same(void **state)
     test_run_reset(&r);
 }
 
+static void a_map_has_them_where_they_are_of_use(void **state)
+{
+    (void)state;
+    static const char *const BESIDE[] = {
+        "", "Shape \"curve\" \"point3 P\" [8 1 8  8 2 8  8 3 8  8 4 8] \"float width\" 0.1\n"};
+    test_run r;
+    test_run_init(&r, 1);
+    photon_block *blocks = calloc(BLOCKS, sizeof *blocks);
+    assert_non_null(blocks);
+    for (int i = 0; i < 2; i++) {
+        char text[1000];
+        snprintf(text, sizeof text, "%s%s", SCENE, BESIDE[i]);
+        scene *s = test_scene_create(&r, text);
+        photon_map map = {.blocks = blocks, .surfaces = s, .is_borrowed = true, .mean_radius = RADIUS};
+        photon_map_make_spaces(&map, 1000); /* of no photons */
+        assert_null(map.spaces);
+        map.set.count = BLOCKS * PHOTON_BLOCK_LANES - 1;
+        const uint64_t without = photon_map_bytes(&map), bytes = photon_map_spaces_bytes(s, map.set.count);
+        photon_map_make_spaces(&map, 1000);
+        assert_int_equal(map.spaces != NULL, i == 0);
+        assert_int_equal(photon_map_bytes(&map), without + bytes);
+        assert_int_equal(bytes > BLOCKS * sizeof(clear_space), i == 0);
+        photon_map_drop_spaces(&map);
+        assert_null(map.spaces);
+        assert_int_equal(photon_map_bytes(&map), without);
+        if (FEWER == 1) { /* sanitizers end a program that asks for too much */
+            photon_map_make_spaces(&map, (uint64_t)1 << 62);
+            assert_null(map.spaces);
+        }
+        scene_destroy(s);
+    }
+    free(blocks);
+    test_run_reset(&r);
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(all_threads_get_the_same)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(all_threads_get_the_same),
+                                       cmocka_unit_test(a_map_has_them_where_they_are_of_use)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -100,11 +100,11 @@ static void test_memory(void **state)
 }
 
 /* Returns by how much memory's peak is higher with one option than with another, measured or predicted. */
-static double peak_more(bool is_dry, const char *option, const char *other)
+static double peak_more(bool is_dry, const char *photons, const char *option, const char *other)
 {
     double peaks[2];
     for (int i = 0; i < 2; i++) {
-        program_run run = RUN(is_dry ? "--dry-run" : "-q", "--photons=600000", "--size=32x32", "--spp=1", "--noise=0",
+        program_run run = RUN(is_dry ? "--dry-run" : "-q", photons, "--size=32x32", "--spp=1", "--noise=0",
                               i == 0 ? option : other, "--stats=a.json", "-o", "a.exr", BOX);
         expect_exit(&run, 0);
         program_run_reset(&run);
@@ -119,10 +119,44 @@ static double peak_more(bool is_dry, const char *option, const char *other)
 static void test_memory_of_aiming(void **state)
 {
     (void)state;
-    const double predicted = peak_more(true, "--photon-aim=0.8", "--photon-aim=0"),
-                 real = peak_more(false, "--photon-aim=0.8", "--photon-aim=0");
+    const double predicted = peak_more(true, "--photons=600000", "--photon-aim=0.8", "--photon-aim=0"),
+                 real = peak_more(false, "--photons=600000", "--photon-aim=0.8", "--photon-aim=0");
     if (predicted < 0.4 * real || predicted > real + 4e6)
         fail_msg("predicted %.1f MB more, but it took %.1f more", predicted / 1e6, real / 1e6);
+}
+
+/* What each photon takes: the photons themselves, the tree, and the spaces around them. */
+static void test_memory_of_photons(void **state)
+{
+    (void)state;
+    const double predicted = peak_more(true, "--photon-aim=0", "--photons=2000000", "--photons=1000000"),
+                 real = peak_more(false, "--photon-aim=0", "--photons=2000000", "--photons=1000000");
+    if (fabs(predicted - real) > 0.1 * real)
+        fail_msg("predicted %.1f bytes a photon, but it took %.1f", predicted / 1e6, real / 1e6);
+}
+
+/* What there is only where its memory can be had is left out where --memory allows no more than the rest. */
+static void test_limit_without_spaces(void **state)
+{
+    (void)state;
+#define MANY                                                                                                           \
+    "--photons=7000000", "--photon-aim=0", "--caustic-photons=0", "--size=16x16", "--spp=1", "--noise=0",              \
+        "--nthreads=1", "-o", "a.exr", BOX
+    static const char NEEDS[] = "the picture needs about ";
+    program_run run = RUN("--memory=1M", MANY);
+    expect_exit(&run, 3);
+    const char *needs = strstr(run.err, NEEDS);
+    assert_non_null(needs);
+    const double needed = 1e6 * strtod(needs + strlen(NEEDS), NULL);
+    program_run_reset(&run);
+    char limit[64];
+    snprintf(limit, sizeof limit, "--memory=%.0f", needed + 1e6);
+    run = RUN(limit, "--stats=a.json", MANY);
+    expect_exit(&run, 0);
+    program_run_reset(&run);
+    json_t *stats = stats_read(in_folder("a.json"));
+    assert_true(number_of(stats, "photons.bytes") < 26.0 * 7e6);
+    json_decref(stats);
 }
 
 static void test_limit(void **state)
@@ -156,8 +190,13 @@ static void test_limit(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        TEST_IN_FOLDER(test_dry_run),          TEST_IN_FOLDER(test_samples), TEST_IN_FOLDER(test_memory),
-        TEST_IN_FOLDER(test_memory_of_aiming), TEST_IN_FOLDER(test_limit),
+        TEST_IN_FOLDER(test_dry_run),
+        TEST_IN_FOLDER(test_samples),
+        TEST_IN_FOLDER(test_memory),
+        TEST_IN_FOLDER(test_memory_of_aiming),
+        TEST_IN_FOLDER(test_memory_of_photons),
+        TEST_IN_FOLDER(test_limit_without_spaces),
+        TEST_IN_FOLDER(test_limit),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -45,7 +45,7 @@ static void expect_balance(const char *stats_file, long long photons, long long 
               caustic = stats_integer(stats, "photons.stored_caustic");
     long long computed = stats_integer(stats, "irradiance.computed");
     assert_int_equal(global, photons);
-    assert_true(stats_integer(stats, "photons.bytes") <= 28 * (global + caustic + irradiance_photons) + 2048);
+    assert_true(stats_integer(stats, "photons.bytes") <= 34 * (global + caustic + irradiance_photons) + 2048);
     assert_true(computed > 0);
     assert_int_equal(computed, stats_integer(stats, "irradiance.distinct"));
     assert_int_equal(stats_integer(stats, "irradiance.duplicated"), 0);

@@ -22,16 +22,18 @@ typedef struct ag_prediction {
     uint64_t memory_peak_bytes;   /* resident peak of the whole process; no less than its peak so far */
     uint64_t memory_needed_bytes; /* the largest sum of the following that is allocated at once */
     uint64_t memory_scene_bytes;  /* resident now: the program and the scene */
-    uint64_t memory_photon_bytes; /* photon maps */
+    uint64_t memory_photon_bytes; /* photon maps, and what is known of the space around the photons */
     uint64_t memory_thread_bytes; /* scratch memory of all threads */
     uint64_t memory_film_bytes;
     uint64_t memory_host_bytes; /* of the host itself, from ag_context_expect_host_memory */
     uint64_t memory_file_bytes; /* for writing a picture; photon maps and scratch memory are freed before */
     /* Time on this machine, if it is otherwise idle; 0: not predicted: */
     double time_s[AG_PHASE_COUNT];
-    double time_total_s;      /* since the context was created */
-    double cpu_s;             /* of all threads */
-    double samples_per_pixel; /* average */
+    double time_total_s;            /* since the context was created */
+    double cpu_s;                   /* of all threads */
+    double samples_per_pixel;       /* average */
+    uint64_t memory_optional_bytes; /* of memory_needed_bytes: what there is not where it cannot be had; the picture is
+                                     * the same, but takes more time */
 } ag_prediction;
 
 /* Tells predictions how many bytes the host will allocate itself beside a rendering, for instance to show it, and has
@@ -108,7 +110,8 @@ typedef struct ag_statistics {
     double irradiance_estimate_s; /* CPU seconds of estimates, all threads; extrapolated from every sixteenth */
     double irradiance_wait_s;     /* CPU seconds of waiting for other threads' estimates, all threads */
     /* Rays by purpose. estimate: cast by estimates and lookups in the photon maps, to find where surfaces end and
-     * which photons are visible. */
+     * which photons are visible; those whose answer is known are not cast, and the ray and the queries that find out
+     * what is near a leaf of a map, once for each leaf, are not counted. */
     uint64_t rays_camera, rays_shadow, rays_gather, rays_photon, rays_path, rays_estimate;
     uint64_t samples_not_finite; /* camera samples dropped because a component was not finite: 0 */
     double time_s[AG_PHASE_COUNT];
