@@ -28,6 +28,7 @@ void last_frame_leave(ag_context *context, photon_map *map, scene_forms *forms)
         return;
     *left = (last_frame){*map, *forms};
     left->map.surfaces = NULL;
+    photon_map_drop_spaces(&left->map); /* they are of that scene */
     *map = (photon_map){0};
     *forms = (scene_forms){0};
     replace(context, left);

@@ -4,6 +4,7 @@
  * Threads: one. */
 #define _GNU_SOURCE
 #include "fixtures/temporary_folder.h"
+#include "last_frame.h"
 #include "rendering.h"
 
 #include <math.h>
@@ -18,6 +19,7 @@ typedef struct props {
     double plate[PLATES][3]; /* where plates stand on the floor; the first `plates` of them do, and how high */
     int plates;
     bool has_net, has_fur, has_mist; /* an alpha texture; curves; an interface */
+    bool is_plain;                   /* nothing is an instance */
 } props;
 
 static uint64_t drawn = 1;
@@ -54,10 +56,12 @@ static void describe(const props *s, char text[TEXT_MAX])
     add_wall(text, "-2 -2 -2 -2 2 -2 -2 2 2 -2 -2 2");
     ADD("Material \"diffuse\" \"rgb reflectance\" [.2 .7 .2]\n");
     add_wall(text, "2 -2 -2 2 -2 2 2 2 2 2 2 -2");
-    ADD("ObjectBegin \"block\"\nShape \"sphere\" \"float radius\" .3\nObjectEnd\n");
-    ADD("AttributeBegin ActiveTransform EndTime Translate %.9g 0 0 ActiveTransform All Translate 1.2 -1.6 1\n"
-        "ObjectInstance \"block\" AttributeEnd\n",
-        s->shutter);
+    if (!s->is_plain)
+        ADD("ObjectBegin \"block\"\nShape \"sphere\" \"float radius\" .3\nObjectEnd\n");
+    if (!s->is_plain)
+        ADD("AttributeBegin ActiveTransform EndTime Translate %.9g 0 0 ActiveTransform All Translate 1.2 -1.6 1\n"
+            "ObjectInstance \"block\" AttributeEnd\n",
+            s->shutter);
     ADD("AttributeBegin Translate %.9g %.9g %.9g Shape \"sphere\" \"float radius\" %.9g AttributeEnd\n", s->ball[0],
         s->ball[1], s->ball[2], s->ball_radius);
     for (int i = 0; i < s->plates; i++) { /* seen edge on from the lamp: hardly any photon meets one */
@@ -171,6 +175,7 @@ static frame_bits render_frame(studio *in, const props *what, const estimating *
     out.irradiances = malloc(bytes);
     assert_non_null(out.irradiances);
     memcpy(out.irradiances, tree->blocks, bytes);
+    assert_int_equal(r->maps->global.spaces != NULL, what->is_plain);
     ag_rendering_finish(r, NULL);
     ag_scene_destroy(made);
     return out;
@@ -308,10 +313,25 @@ static void test_taking_over(void **state)
     ag_context_destroy(two.context);
 }
 
+/* What is known of the space around photons goes with the scene. */
+static void test_spaces(void **state)
+{
+    (void)state;
+    studio in;
+    const props plain = {.ball = {0, -1, -1.8}, .ball_radius = .04, .lamp = 10, .red = .7, .is_plain = true};
+    const estimating by = {AG_CACHE_ON_DEMAND, 1.0f, 0.0f, 10, 1000000};
+    open_shot(&in, 1);
+    frame_bits bits = render_frame(&in, &plain, &by);
+    assert_non_null(in.context->last_frame);
+    assert_null(in.context->last_frame->map.spaces);
+    free_bits(&bits);
+    ag_context_destroy(in.context);
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_all_slots), cmocka_unit_test(test_on_demand),
-                                       cmocka_unit_test(test_fraction), cmocka_unit_test(test_full_map),
-                                       cmocka_unit_test(test_taking_over)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_all_slots),   cmocka_unit_test(test_on_demand),
+                                       cmocka_unit_test(test_fraction),    cmocka_unit_test(test_full_map),
+                                       cmocka_unit_test(test_taking_over), cmocka_unit_test(test_spaces)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
