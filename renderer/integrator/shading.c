@@ -88,7 +88,7 @@ static direct_light direct_radiance(const transport *t, eye_worker *worker, cons
     uint64_t before = eye_worker_cost(worker);
     direct_light direct =
         direct_light_gathered(t, worker, v, &path->where, eye_path_key(path) + KEY_OF_RAYS * (int)sampler_bits(lights),
-                              transport_sample_counts(t, lights), by_group);
+                              transport_sample_counts(t, lights, path->scatterings == 0), by_group);
     if (path->scatterings == 0) {
         float weight = rgb_mean(path->throughput);
         sample->light_cost += (uint32_t)(eye_worker_cost(worker) - before);

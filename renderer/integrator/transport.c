@@ -5,13 +5,13 @@
 
 enum { LIGHT_SAMPLES_PER_SCATTER_SAMPLE = 4 };
 
-sample_counts transport_sample_counts(const transport *t, uint32_t lights)
+sample_counts transport_sample_counts(const transport *t, uint32_t lights, bool is_first)
 {
     sample_counts n = {.light = (int)lights, .scatter_probability = 1.0f};
     if (t->can_meet_lights)
         n.scatter = (n.light + LIGHT_SAMPLES_PER_SCATTER_SAMPLE - 1) / LIGHT_SAMPLES_PER_SCATTER_SAMPLE;
-    const bool may_be_bright = !(t->settings->clamp_direct > 0.0f || t->settings->clamp_indirect > 0.0f);
-    if (n.scatter == 1 && may_be_bright) /* a bound would cut what chance has made brighter */
+    /* a bound would cut what chance has made brighter */
+    if (n.scatter == 1 && !is_first && !(t->settings->clamp_indirect > 0.0f))
         n.scatter_probability = (float)n.light / (float)LIGHT_SAMPLES_PER_SCATTER_SAMPLE;
     return n;
 }

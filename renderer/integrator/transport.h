@@ -64,8 +64,9 @@ typedef struct sample_counts {
     int scatter;               /* by scattering, 0 where that cannot meet a lamp */
     float scatter_probability; /* a single sample by scattering is taken with this probability; else 1 */
 } sample_counts;
-/* There is a sample by scattering for four towards lamps; fewer of these have one by chance. */
-sample_counts transport_sample_counts(const transport *t, uint32_t lights);
+/* There is a sample by scattering for four towards lamps. Fewer of these have one for certain at a path's first surface
+ * (is_first), and by chance behind it, where it costs as much and brings less. */
+sample_counts transport_sample_counts(const transport *t, uint32_t lights, bool is_first);
 
 /* Follows a ray of unit direction to the first surface that scatters. */
 bool transport_trace(const transport *t, eye_worker *worker, scene_ray ray, vertex *out_vertex);

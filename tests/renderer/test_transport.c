@@ -110,26 +110,25 @@ static void caustics(void **state)
     eye_reset(&e);
 }
 
-/* Four samples towards lamps have one by scattering, and fewer have one by chance; but not under a bound, which would
- * cut what chance has made brighter. */
+/* Four samples towards lamps have one by scattering. Behind the first surface fewer have one by chance; but not under a
+ * bound, which would cut what chance has made brighter. */
 static void samples_by_scattering(void **state)
 {
     (void)state;
     static const struct {
         uint32_t lights;
-        float mean;
-    } ROWS[] = {{1, 0.25f}, {2, 0.5f}, {4, 1.0f}, {16, 4.0f}};
+        float behind, first;
+    } ROWS[] = {{1, 0.25f, 1.0f}, {2, 0.5f, 1.0f}, {4, 1.0f, 1.0f}, {16, 4.0f, 4.0f}};
     eye e;
     eye_init(&e, "LightSource \"infinite\" \"rgb L\" [1 1 1]");
-    for (size_t i = 0; i < sizeof ROWS / sizeof *ROWS; i++) {
-        e.settings.clamp_direct = e.settings.clamp_indirect = 0.0f;
-        sample_counts counts = transport_sample_counts(&e.t, ROWS[i].lights);
-        assert_close((double)((float)counts.scatter * counts.scatter_probability), (double)ROWS[i].mean, 0.0);
-        e.settings.clamp_direct = 1.0f;
-        assert_true(transport_sample_counts(&e.t, ROWS[i].lights).scatter_probability == 1.0f);
-        e.settings = (ag_render_settings){.clamp_indirect = 1.0f};
-        assert_true(transport_sample_counts(&e.t, ROWS[i].lights).scatter_probability == 1.0f);
-    }
+    for (size_t i = 0; i < sizeof ROWS / sizeof *ROWS; i++)
+        for (int is_bounded = 0; is_bounded < 2; is_bounded++)
+            for (int is_first = 0; is_first < 2; is_first++) {
+                e.settings.clamp_indirect = (float)is_bounded;
+                sample_counts counts = transport_sample_counts(&e.t, ROWS[i].lights, is_first);
+                float wanted = is_bounded || is_first ? ROWS[i].first : ROWS[i].behind;
+                assert_close((double)((float)counts.scatter * counts.scatter_probability), (double)wanted, 0.0);
+            }
     eye_reset(&e);
 }
 
