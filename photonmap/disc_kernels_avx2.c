@@ -403,6 +403,7 @@ AVX2 static uint32_t sum_in_region(const photon_disc *disc, const surface_region
     const float *lines = region->line[0];
     const __m256i octants = _mm256_slli_epi32(load(SURFACE_REGION_OCTANT), 1);
     const __m256 line[2] = {_mm256_i32gather_ps(lines, octants, 4), _mm256_i32gather_ps(lines + 1, octants, 4)};
+    const __m256 scale = offset_scale(disc);
     const uint32_t slots = f->leaf_count * PHOTON_BLOCK_LANES;
     near_sums sums = near_sums_none();
     uint32_t inside = 0;
@@ -414,7 +415,7 @@ AVX2 static uint32_t sum_in_region(const photon_disc *disc, const surface_region
             if (!find_photons(disc, f, i, &p))
                 continue;
             __m256i is_inside = _mm256_and_si256(find_inside(region, line, p.offset), p.is_found);
-            sums_add(&sums, disc, true, offset_scale(disc), &p.block->flux[p.lane], p.offset, is_inside, out_sums);
+            sums_add(&sums, disc, true, scale, &p.block->flux[p.lane], p.offset, is_inside, out_sums);
             inside += (uint32_t)__builtin_popcount((uint32_t)_mm256_movemask_ps(_mm256_castsi256_ps(is_inside)));
         }
     }

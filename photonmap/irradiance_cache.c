@@ -10,7 +10,7 @@
 #include <stdlib.h>
 
 enum { PRECOMPUTE_BLOCK = 512 };
-/* What a rendering takes for each worker later, and more. */
+/* A rendering takes less memory than that for each worker after the cache has been made. */
 static const uint64_t SPARE_BYTES_PER_WORKER = (uint64_t)12 << 20;
 /* Reading a thread's CPU time is a system call, so that one of this many estimates is timed. */
 enum { TIMED_EVERY = 16 };

@@ -26,9 +26,9 @@ typedef struct photon_block {
 
 _Static_assert(sizeof(photon_block) == PHOTON_BLOCK_LANES * sizeof(photon), "a block is no larger than its records");
 
-static inline uint64_t photon_block_count(uint32_t photon_count)
+static inline uint64_t photon_block_count(uint64_t photon_count)
 {
-    return ((uint64_t)photon_count + PHOTON_BLOCK_LANES - 1) / PHOTON_BLOCK_LANES;
+    return (photon_count + PHOTON_BLOCK_LANES - 1) / PHOTON_BLOCK_LANES;
 }
 
 /* Allocates room for photon_count records, and for the blocks that they become; to be freed by free(). NULL when out of

@@ -178,8 +178,7 @@ static const float SPACE_RADII = 3.0f;
 
 uint64_t photon_map_spaces_bytes(const scene *s, uint64_t photon_count)
 {
-    return photon_count > 0 && clear_space_is_told(s) ? clear_spaces_bytes((photon_count - 1) / PHOTON_BLOCK_LANES + 1)
-                                                      : 0;
+    return photon_count > 0 && clear_space_is_told(s) ? clear_spaces_bytes(photon_block_count(photon_count)) : 0;
 }
 
 void photon_map_make_spaces(photon_map *map, uint64_t spare)

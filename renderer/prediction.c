@@ -310,7 +310,7 @@ static double cost_of_wanted(double tried_s, double fewer_s, double step, double
 
 static double at_most(uint64_t count, uint64_t most) { return count > most ? (double)count / (double)most : 1.0; }
 
-/* What is rendered instead of the picture. */
+/* A prediction renders a trial instead of the picture: with its settings, but at most TRIAL_PHOTONS in each map. */
 typedef struct trial_plan {
     ag_render_settings tried;
     uint64_t wanted[2];                 /* photons of the picture's global and caustic map */

@@ -122,6 +122,7 @@ static float variance_of_mean(float sum, float squares, int count)
     return fmaxf(squares - sum * sum / n, 0.0f) / (n * (n - 1.0f));
 }
 
+/* Returns how many samples by scattering are taken on average. */
 static float mean_scatter_count(sample_counts counts) { return (float)counts.scatter * counts.scatter_probability; }
 
 /* The samples that one of the two ways of sampling has taken of a vertex's direct light. */
@@ -165,12 +166,11 @@ static light_sums sample_scattering(const transport *t, eye_worker *worker, cons
 {
     light_sums sums = {rgb_gray(0.0f), 0.0f};
     const uint32_t count = (uint32_t)counts.scatter;
-    const float share = counts.scatter > 0 ? 1.0f / mean_scatter_count(counts) : 0.0f;
-    const vec3 from = vertex_position(v), normal = vertex_light_normal(v, BSDF_GATHERED);
-    const float mean_count = mean_scatter_count(counts);
-    if (counts.scatter_probability < 1.0f &&
-        sampler_2d(where, SAMPLE_LOBE, path_vertex + KEY_OF_CHANCE).x >= counts.scatter_probability)
+    if (count == 0 || (counts.scatter_probability < 1.0f &&
+                       sampler_2d(where, SAMPLE_LOBE, path_vertex + KEY_OF_CHANCE).x >= counts.scatter_probability))
         return sums;
+    const float mean_count = mean_scatter_count(counts), share = 1.0f / mean_count;
+    const vec3 from = vertex_position(v), normal = vertex_light_normal(v, BSDF_GATHERED);
     for (uint32_t i = 0; i < count; i++) {
         float u_lobe = sampler_2d_of(where, SAMPLE_LOBE, path_vertex, count, i).y; /* x decides the vertex's way on */
         vec2 u = sampler_2d_of(where, SAMPLE_SCATTER_TO_LIGHT, path_vertex, count, i);

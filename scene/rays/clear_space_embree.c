@@ -15,8 +15,8 @@ enum { SURFACES_MOST = 64, TRIALS = 3 };
 static const float ROUNDING = 0x1p-10f;
 /* The sine between two normals that count as the same: a cosine differs by no more, half of ROUNDING. */
 static const float LEVEL_SINE = 0x1p-11f;
-/* What is level with the surface itself may be rounded so many times as much: tiles that lie farther from the origin.
- */
+/* A surface is level with the space's own only if its rounding error is at most this many times the own one's, as that
+ * of tiles farther from the origin. */
 static const float LEVEL_MARGINS = 8.0f;
 
 typedef struct search {
@@ -134,8 +134,8 @@ static float distance_to(const search *q, const shape *at, uint32_t primitive_in
     return sqrtf(vec3_distance_squared(q->space->center, vec3_min(vec3_max(q->space->center, low), high)));
 }
 
-/* The same, less what rounding makes of it, to one that does not lie below the space; INFINITY: it does, or is the
- * space's own. */
+/* Returns the distance from the centre to an obstacle, less its rounding error. INFINITY: the surface is no obstacle,
+ * since it lies below the space or is the space's own. */
 static float distance_to_obstacle(search *q, uint32_t shape_index, uint32_t primitive_index)
 {
     const clear_space *space = q->space;

@@ -125,7 +125,7 @@ static void test_memory_of_aiming(void **state)
         fail_msg("predicted %.1f MB more, but it took %.1f more", predicted / 1e6, real / 1e6);
 }
 
-/* What each photon takes: the photons themselves, the tree, and the spaces around them. */
+/* A photon takes as much memory as is predicted: for itself, in the tree, and for the space around it. */
 static void test_memory_of_photons(void **state)
 {
     (void)state;

@@ -90,6 +90,9 @@ static void answers_are_those_of_rays(void **state)
     "AttributeBegin MediumInterface \"fog\" \"\" Material \"interface\"\n"                                             \
     "Shape \"trianglemesh\" \"point3 P\" [" corners "] \"integer indices\" [0 1 2 0 2 3] AttributeEnd\n"
 
+/* Places of which all is the same but the scene. */
+#define OVER_THE_FLOOR {1, 1, 5}, {9, 1, 5}, {0, 0, 8}, {0, -1, 0}, 1.0f, 0.3f, false
+
 /* Points are those that are seen along `toward`, any way where that is 0, from beside a line between two points. */
 typedef struct place {
     const char *what, *text;
@@ -104,40 +107,10 @@ static const place PLACES[] = {
      "MakeNamedMaterial \"a\" \"string type\" \"interface\" MakeNamedMaterial \"b\" \"string type\" \"diffuse\"\n"
      "MakeNamedMaterial \"m\" \"string type\" \"mix\" \"string materials\" [\"a\" \"b\"] \"float amount\" 0.5\n"
      "NamedMaterial \"m\"\n" FLOOR,
-     {1, 1, 5},
-     {9, 1, 5},
-     {0, 0, 8},
-     {0, -1, 0},
-     1.0f,
-     0.3f,
-     false},
-    {"an interface on the floor",
-     FOG("2 0 2  8 0 2  8 0 8  2 0 8") FLOOR,
-     {1, 1, 5},
-     {9, 1, 5},
-     {0, 0, 8},
-     {0, -1, 0},
-     1.0f,
-     0.3f,
-     false},
-    {"the same behind it",
-     FLOOR FOG("2 0 2  8 0 2  8 0 8  2 0 8"),
-     {1, 1, 5},
-     {9, 1, 5},
-     {0, 0, 8},
-     {0, -1, 0},
-     1.0f,
-     0.3f,
-     false},
-    {"the same a little above it",
-     FLOOR FOG("2 0.0001 2  8 0.0001 2  8 0.0001 8  2 0.0001 8"),
-     {1, 1, 5},
-     {9, 1, 5},
-     {0, 0, 8},
-     {0, -1, 0},
-     1.0f,
-     0.3f,
-     false},
+     OVER_THE_FLOOR},
+    {"an interface on the floor", FOG("2 0 2  8 0 2  8 0 8  2 0 8") FLOOR, OVER_THE_FLOOR},
+    {"the same behind it", FLOOR FOG("2 0 2  8 0 2  8 0 8  2 0 8"), OVER_THE_FLOOR},
+    {"the same a little above it", FLOOR FOG("2 0.0001 2  8 0.0001 2  8 0.0001 8  2 0.0001 8"), OVER_THE_FLOOR},
     {"a plate over a plain that is a sphere",
      "Shape \"bilinearmesh\" \"point3 P\" [0 0.3 0  1 0.3 0  0 0.5 1  1 0.5 1]\n" BALL("0 -100000 0", "100000"),
      {.5f, .05f, .5f},
@@ -336,7 +309,7 @@ static void crowds_are_left_alone(void **state)
     test_run_init(&r, 1);
     char *text = malloc(200000), *end = text;
     assert_non_null(text);
-    end += sprintf(end, "Shape \"bilinearmesh\" \"point3 P\" [0 0 0  10 0 0  0 0 10  10 0 10]\n");
+    end += sprintf(end, FLOOR);
     for (int i = 0; i < SPHERES; i++)
         end += sprintf(end, "AttributeBegin Translate %d 5 0 Shape \"sphere\" AttributeEnd\n", 3 * i);
     scene *s = test_scene_create(&r, text);
