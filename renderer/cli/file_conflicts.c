@@ -10,6 +10,9 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <unistd.h>
+
+enum { LINK_LIMIT = 40 };
 
 /* The file that a path names: one that is there, or a name in a folder. */
 typedef struct named_file {
@@ -19,6 +22,25 @@ typedef struct named_file {
     ino_t inode;
     char name[NAME_MAX + 1]; /* in that folder */
 } named_file;
+
+/* Where a file of this name would be made: what a chain of symbolic links ends at. Owned; NULL when out of memory. */
+static char *end_of_links(const char *path)
+{
+    char *end = strdup(path), target[PATH_MAX];
+    for (int i = 0; end && i < LINK_LIMIT; i++) {
+        const ssize_t length = readlink(end, target, sizeof target);
+        if (length < 0)
+            break;
+        const char *slash = strrchr(end, '/');
+        const int kept = target[0] == '/' || !slash ? 0 : (int)(slash + 1 - end);
+        char *next;
+        if (asprintf(&next, "%.*s%.*s", kept, end, (int)length, target) < 0)
+            next = NULL;
+        free(end);
+        end = next;
+    }
+    return end;
+}
 
 /* A folder that is not there gives nothing to compare; the output's own check says so. */
 static named_file find(const char *path)
@@ -32,14 +54,16 @@ static named_file find(const char *path)
         file.inode = status.st_ino;
         return file;
     }
-    const char *slash = strrchr(path, '/');
-    char *folder = slash ? strndup(path, (size_t)(slash - path) + 1) : strdup(".");
-    if (folder && stat(folder, &status) == 0) {
+    char *end = end_of_links(path);
+    const char *slash = end ? strrchr(end, '/') : NULL;
+    char *folder = slash ? strndup(end, (size_t)(slash - end) + 1) : strdup(".");
+    if (end && folder && stat(folder, &status) == 0) {
         file.device = status.st_dev;
         file.inode = status.st_ino;
-        snprintf(file.name, sizeof file.name, "%s", slash ? slash + 1 : path);
+        snprintf(file.name, sizeof file.name, "%s", slash ? slash + 1 : end);
     }
     free(folder);
+    free(end);
     return file;
 }
 

@@ -201,7 +201,8 @@ static ag_status render_scene(picture_run *r, const ag_scene *scene, passes_resu
 static ag_status tell_statistics(picture_run *r, ag_status status, const passes_result *result)
 {
     const options *o = r->o;
-    const bool is_made = status == AG_OK || result->is_partial;
+    const bool lacks_file = status == AG_ERROR_OUTPUT && result->samples.most > 0; /* and the others are written */
+    const bool is_made = status == AG_OK || result->is_partial || lacks_file;
     if (r->is_skipped)
         return status;
     if (is_made && !o->dry_run && o->verbosity >= 1) {
@@ -245,7 +246,7 @@ static ag_status run(ag_context *context, options *o, int frame, progress *told,
 
 static void tell_end(const options *o, ag_status status, const passes_result *result)
 {
-    if (status == AG_CANCELLED && o->verbosity >= 0) {
+    if ((status == AG_CANCELLED || result->is_partial) && o->verbosity >= 0) {
         if (result->is_partial && result->samples.most > 0)
             fprintf(stderr, "afterglow: interrupted: the picture has %.4g samples per pixel, from %d to %d\n",
                     result->samples.mean, result->samples.least, result->samples.most);

@@ -4,6 +4,7 @@
 
 #include "display_server.h"
 #include "memory_limit.h"
+#include "picture_files.h"
 #include "picture_mark.h"
 #include "progress.h"
 #include "signals.h"
@@ -18,7 +19,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -35,6 +35,7 @@ typedef struct passes {
     double begun;               /* when rendering began, in seconds of passes_seconds() */
     int final;                  /* samples per pixel in the end */
     bool is_written;            /* the picture is; what is written after it is another view */
+    ag_status unwritten;        /* AG_OK, or AG_ERROR_OUTPUT: a file is missing in the end, which has been told */
     ag_end cut;                 /* AG_END_TIME_LIMIT, AG_END_KEPT: it ends in order with fewer; else AG_END_NONE */
 } passes;
 
@@ -47,37 +48,17 @@ double passes_seconds(void)
 
 /* --- pictures --- */
 
-/* A pipe or device takes one picture, the last one. */
-static bool is_stream(const char *outfile)
+static ag_status write_pictures(const passes *p, const ag_film *film, bool is_last)
 {
-    struct stat info;
-    return stat(outfile, &info) == 0 && !S_ISREG(info.st_mode);
+    return picture_files_write(p->context, p->o, film, is_last, p->is_written);
 }
 
-static bool is_pipe(const char *outfile)
+/* Notes that a file could not be written, for the end of the run: the other files are written all the same. */
+static ag_status note_unwritten(passes *p, ag_status status)
 {
-    struct stat info;
-    return stat(outfile, &info) == 0 && S_ISFIFO(info.st_mode);
-}
-
-static ag_status write_pictures(passes *p, const ag_film *film, bool is_last)
-{
-    for (int i = 0; i < p->o->outfile_count; i++) {
-        const char *outfile = p->o->outfiles[i];
-        if ((!is_last || p->is_written) && is_stream(outfile)) {
-            if (is_last && p->o->verbosity >= 0)
-                fprintf(stderr, "afterglow: '%s' is no regular file: it has the picture, and not the view\n", outfile);
-            continue;
-        }
-        if (!is_last)
-            AG_TRY(picture_mark_unfinished(outfile));
-        if (is_pipe(outfile) && p->o->verbosity >= 0)
-            fprintf(stderr, "afterglow: '%s' is a pipe: it is written when somebody reads it\n", outfile);
-        const ag_output_settings output = options_output(p->o, i);
-        AG_TRY(ag_film_write(p->context, film, &output, outfile));
-        if (is_last)
-            picture_mark_finished(outfile);
-    }
+    if (status != AG_ERROR_OUTPUT)
+        return status;
+    p->unwritten = status;
     return AG_OK;
 }
 
@@ -192,15 +173,23 @@ static void note_page(const passes *p)
     page_server_note(p->o->page, &notes);
 }
 
-/* Writes what is due in a pause or after a pass: a snapshot or preview, and a checkpoint; tells who watches. */
+/* Writes what is due in a pause or after a pass: a snapshot or preview, and a checkpoint; tells who watches. What
+ * cannot be written on the way does not end the render: the disk may have room again when the picture is complete. */
 static ag_status serve(passes *p, bool is_after_pass)
 {
+    ag_status shown = AG_OK, saved = AG_OK;
     note_page(p);
     if (signals_take_snapshot())
-        AG_TRY(write_snapshot(p));
+        shown = write_snapshot(p);
     else if (is_after_pass && p->o->preview)
-        AG_TRY(write_pictures(p, ag_rendering_film(p->rendering), false));
-    return passes_seconds() >= p->next_checkpoint ? write_checkpoint(p) : AG_OK;
+        shown = write_pictures(p, ag_rendering_film(p->rendering), false);
+    if (passes_seconds() >= p->next_checkpoint)
+        saved = write_checkpoint(p);
+    if (shown == AG_ERROR_OUTPUT || saved == AG_ERROR_OUTPUT)
+        progress_log(p->o->told, AG_LOG_WARNING, "rendering goes on without this file");
+    if (shown != AG_OK && shown != AG_ERROR_OUTPUT)
+        return shown;
+    return saved == AG_ERROR_OUTPUT ? AG_OK : saved;
 }
 
 /* AG_PAUSED: a signal wants the end. */
@@ -305,7 +294,7 @@ static ag_status render(passes *p, passes_result *out_result, ag_noise *out_nois
         status = AG_OK;
     }
     if (status == AG_OK && p->checkpoint && (out_result->is_partial || p->cut != AG_END_NONE))
-        status = write_checkpoint(p);
+        status = note_unwritten(p, write_checkpoint(p));
     out_result->samples = ag_rendering_sample_counts(p->rendering);
     *out_noise = ag_rendering_noise(p->rendering);
     ag_context_note_end(p->context, find_end(p, out_result));
@@ -324,7 +313,7 @@ static ag_status show(passes *p, ag_film *film, const ag_render_settings *settin
         AG_TRY(ag_film_denoise(p->context, film));
     }
     if (has_picture) {
-        AG_TRY(write_pictures(p, film, !result->is_partial && failed == AG_OK));
+        AG_TRY(note_unwritten(p, write_pictures(p, film, !result->is_partial && failed == AG_OK)));
         progress_leave_film(o->told, true); /* what is said from here on stands below */
     }
     if (failed != AG_OK) {
@@ -332,7 +321,7 @@ static ag_status show(passes *p, ag_film *film, const ag_render_settings *settin
                 result->samples.mean, p->final);
         return failed;
     }
-    if (p->checkpoint && !result->is_partial && p->cut == AG_END_NONE)
+    if (p->checkpoint && !result->is_partial && p->cut == AG_END_NONE && p->unwritten == AG_OK)
         unlink(p->checkpoint); /* it has served */
     if (p->cut != AG_END_NONE && o->verbosity >= 0)
         fprintf(stderr, "afterglow: %s: the picture has %.4g of %d samples per pixel\n",
@@ -462,7 +451,7 @@ ag_status passes_render(ag_context *context, const options *o, const ag_scene *s
         status = render(&p, out_result, &noise, &failed);
     }
     if (status == AG_OK && o->photons_file && !out_result->is_partial && failed == AG_OK)
-        status = ag_rendering_write_photons(p.rendering, o->photons_file);
+        status = note_unwritten(&p, ag_rendering_write_photons(p.rendering, o->photons_file));
     if (status == AG_OK)
         status = write_and_wait(&p, settings, out_result, &noise, failed, films);
     progress_leave_film(o->told, false);
@@ -473,5 +462,7 @@ ag_status passes_render(ag_context *context, const options *o, const ag_scene *s
     ag_film_destroy(films[0]);
     ag_film_destroy(films[1]);
     free(p.checkpoint);
+    if (status == AG_OK)
+        status = p.unwritten;
     return status == AG_OK && out_result->is_partial ? AG_CANCELLED : status;
 }

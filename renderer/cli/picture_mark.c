@@ -41,18 +41,26 @@ char *picture_mark_checkpoint(const char *outfile) { return beside(outfile, CHEC
 
 char *picture_mark_name(const char *outfile) { return beside(outfile, UNFINISHED); }
 
-/* The mark itself; 0 or -1 with errno. */
+/* The mark itself; 0 or -1 with errno. A mark that cannot be filled goes again: the picture that was there before, and
+ * stays then, may be complete. */
 static int write_mark(const char *name)
 {
     static const char TEXT[] = "The picture beside this file is what there was before its render was complete.\n";
-    int file = open(name, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_NONBLOCK | O_NOCTTY, 0666);
+    const int how = O_WRONLY | O_CREAT | O_CLOEXEC | O_NONBLOCK | O_NOCTTY;
+    int file = open(name, how | O_EXCL, 0666);
+    const bool is_new = file >= 0;
+    if (!is_new && errno == EEXIST)
+        file = open(name, how, 0666);
     if (file < 0)
         return -1;
     bool is_written = write(file, TEXT, sizeof TEXT - 1) == (ssize_t)sizeof TEXT - 1 && fsync(file) == 0;
     int error = errno;
     if (close(file) == 0 && is_written)
         return 0;
-    errno = is_written ? errno : error;
+    error = is_written ? errno : error;
+    if (is_new)
+        unlink(name);
+    errno = error;
     return -1;
 }
 

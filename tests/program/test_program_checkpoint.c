@@ -85,6 +85,35 @@ static void test_ended_and_resumed(void **state)
     program_run_reset(&run);
 }
 
+/* A checkpoint is larger than a small picture in integers. Where there is no room for it the render goes on, and a
+ * signal leaves the picture all the same. */
+static void test_no_room(void **state)
+{
+    (void)state;
+    const program_setting limited = {.file_size_limit = 8192};
+    program_run run =
+        program_execute(&limited, ARGUMENTS("--integrator=path", "--spp=2048", "--size=16x16", "--checkpoint=0.01",
+                                            "--preview", "--aov=all", "-o", "huge.exr:float", "-o", "a.png", BOX));
+    expect_exit(&run, 3); /* for the picture with layers alone */
+    expect_said(&run, "cannot write 'huge.exr.afterglow-checkpoint': File too large");
+    expect_said(&run, "rendering goes on without this file");
+    expect_said(&run, "cannot write 'huge.exr': File too large");
+    program_run_reset(&run);
+    expect_listing("a.png huge.exr.afterglow-unfinished");
+    assert_int_equal(unlink(in_folder("huge.exr.afterglow-unfinished")), 0);
+
+    program_process process = program_start(&limited, ARGUMENTS("--integrator=path", LASTING, "--progress=json",
+                                                                "--checkpoint=1000", "--size=32x32", "-ob.png", BOX));
+    program_wait_for(&process, "\"phase\": \"render\"");
+    assert_int_equal(kill(process.id, SIGTERM), 0);
+    run = program_finish(&process);
+    expect_exit(&run, 3);
+    expect_said(&run, "cannot write 'b.png.afterglow-checkpoint': File too large");
+    expect_said(&run, "interrupted: the picture has ");
+    program_run_reset(&run);
+    expect_listing("a.png b.png b.png.afterglow-unfinished");
+}
+
 /* Without a checkpoint there is nothing to go on from, and that is fine; what cannot be written is told beforehand. */
 static void test_usage(void **state)
 {
@@ -107,6 +136,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         TEST_IN_FOLDER(test_killed),
         TEST_IN_FOLDER(test_ended_and_resumed),
+        TEST_IN_FOLDER(test_no_room),
         TEST_IN_FOLDER(test_usage),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

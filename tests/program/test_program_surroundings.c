@@ -145,6 +145,16 @@ static void test_one_file_twice(void **state)
     expect_refused(ARGUMENTS(QUICK, "-o", "q.exr", "--resume", "--dump-photons=./q.exr.afterglow-checkpoint", SPHERE),
                    "written twice");
     expect_listing("");
+    /* links to what is not there yet, over one another too */
+    assert_int_equal(mkdir(in_folder("f"), 0755), 0);
+    assert_int_equal(symlink("../q.exr", in_folder("f/first")), 0);
+    assert_int_equal(symlink("f/first", in_folder("second")), 0);
+    expect_refused(ARGUMENTS(QUICK, "-o", "q.exr", "--stats=second", SPHERE), "'q.exr' and 'second' are one file");
+    expect_refused(ARGUMENTS(QUICK, "-o", "q.exr", "--photon-map=f/first", SPHERE), "one file");
+    expect_refused(ARGUMENTS(QUICK, "-o", "q.exr", "--stats=f/first", "--dump-photons=second", SPHERE), "one file");
+    assert_int_equal(unlink(in_folder("second")), 0);
+    assert_int_equal(unlink(in_folder("f/first")), 0);
+    assert_int_equal(rmdir(in_folder("f")), 0);
     write_text("a.exr", "what was there");
     assert_int_equal(symlink("a.exr", in_folder("b.exr")), 0);
     assert_int_equal(link(in_folder("a.exr"), in_folder("c.exr")), 0);

@@ -1,0 +1,14 @@
+/* picture_files.h: a picture into all the files that were asked for, each with its mark while it is not complete.
+ * Flow: passes -> [here] -> picture_mark, the library. Threads: main's. */
+#ifndef AFTERGLOW_PICTURE_FILES_H
+#define AFTERGLOW_PICTURE_FILES_H
+
+#include "options.h"
+
+/* Writes the film to each of the options' files. is_last: the picture is complete, so that its marks go. is_view: the
+ * film is another view of a picture that has been written before. Files that are not regular take one picture alone,
+ * the complete one. A file that cannot be written does not keep the others from being written.
+ * Errors: AG_ERROR_OUTPUT (of one of the files, which has been told), AG_CANCELLED, AG_ERROR_MEMORY. */
+ag_status picture_files_write(ag_context *context, const options *o, const ag_film *film, bool is_last, bool is_view);
+
+#endif
