@@ -144,7 +144,7 @@ static void find_heading(const scene *s, vec3 eye, view *best)
     }
 }
 
-static view find_view(const scene *s, bool has_outer)
+static view find_view(const scene *s, bool has_outer, const run_context *run)
 {
     const vec3 size = vec3_sub(s->bounds_max, s->bounds_min);
     const vec3 middle = vec3_add_scaled(s->bounds_min, size, 0.5f);
@@ -154,7 +154,7 @@ static view find_view(const scene *s, bool has_outer)
     const float elbow_room = ELBOW_ROOM * vec3_length(size);
     view best = {.distance = -1.0f};
     for (int h = 0; h < HEIGHTS && best.distance < 0.0f; h++)
-        for (int i = 0; i < GRID * GRID; i++) {
+        for (int i = 0; i < GRID * GRID && !run_is_cancelled(run); i++) {
             const float x = ((float)(i % GRID) + 0.5f) / GRID - 0.5f, z = ((float)(i / GRID) + 0.5f) / GRID - 0.5f;
             const vec3 upright = vec3_make(x * width, (HEIGHT_SHARES[h] - 0.5f) * height, z * depth);
             const vec3 position = vec3_add(middle, frame_to_world(f, upright));
@@ -222,15 +222,17 @@ static view own_view(const scene *s, bool has_outer)
     return v;
 }
 
-ag_status closed_room_furnish(scene *s, log_sink *log)
+ag_status closed_room_furnish(scene *s, const run_context *run)
 {
     if ((!s->is_camera_made_up && !s->is_light_made_up) || s->shape_count == 0 || s->bounds_min.x > s->bounds_max.x)
         return AG_OK;
     const bool has_outer = has_outer_walls(s);
-    const view v = s->is_camera_made_up ? find_view(s, has_outer) : own_view(s, has_outer);
+    const view v = s->is_camera_made_up ? find_view(s, has_outer, run) : own_view(s, has_outer);
+    if (run_is_cancelled(run))
+        return AG_CANCELLED;
     if (v.distance < 0.0f)
         return AG_OK;
     if (s->is_camera_made_up)
-        set_camera(s, &v, log);
-    return s->is_light_made_up ? add_lamp(s, &v, log) : AG_OK;
+        set_camera(s, &v, run->log);
+    return s->is_light_made_up ? add_lamp(s, &v, run->log) : AG_OK;
 }

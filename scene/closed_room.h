@@ -10,7 +10,7 @@
 #include "scene.h"
 
 /* Moves camera and light into a room, if there is one; does nothing where the file has both. scene.world_from_upright
- * is the upright direction. Logs at info level. Errors: AG_ERROR_MEMORY. */
-ag_status closed_room_furnish(scene *s, log_sink *log);
+ * is the upright direction. Logs at info level. Errors: AG_ERROR_MEMORY, AG_CANCELLED. */
+ag_status closed_room_furnish(scene *s, const run_context *run);
 
 #endif

@@ -458,7 +458,7 @@ ag_status scene_commit(scene *s, run_context *run, const char *isa)
         return status;
     status = bvh_create(s, run, isa, &s->reuse, &s->bvh);
     if (status == AG_OK)
-        status = closed_room_furnish(s, run->log);
+        status = closed_room_furnish(s, run);
     if (status != AG_OK)
         return status;
     const camera seen = s->camera;

@@ -152,6 +152,30 @@ static void test_loading(void **state)
     expect_listing("a.json mesh.pbrt");
 }
 
+static double seconds(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+/* A hundred thousand triangles in one place, each of which each ray meets: whether the model is a room is found out by
+ * tens of thousands of rays, which take most of a minute. */
+static void test_looking_for_a_room(void **state)
+{
+    (void)state;
+    const char *path = write_text("heap.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf");
+    FILE *file = fopen(path, "a");
+    assert_non_null(file);
+    for (int i = 0; i < 300000; i++)
+        fprintf(file, " %d", i % 3 + 1);
+    assert_int_equal(fclose(file), 0);
+    const double begun = seconds();
+    expect_end("bvh", SIGTERM, ARGUMENTS(LONG, "--spp=100000", path));
+    assert_true(seconds() - begun < 20.0);
+    expect_listing("a.json heap.obj");
+}
+
 /* While files are written the program may as well end in order: then all of them are there. */
 static void test_writing(void **state)
 {
@@ -213,10 +237,15 @@ static void test_ignored_signal(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        TEST_IN_FOLDER(test_every_signal),   TEST_IN_FOLDER(test_every_phase),
-        TEST_IN_FOLDER(test_loading),        TEST_IN_FOLDER(test_snapshot),
-        TEST_IN_FOLDER(test_writing),        TEST_IN_FOLDER(test_second_signal),
-        TEST_IN_FOLDER(test_ignored_signal), TEST_IN_FOLDER(test_repeated_cpu_limit),
+        TEST_IN_FOLDER(test_every_signal),
+        TEST_IN_FOLDER(test_every_phase),
+        TEST_IN_FOLDER(test_loading),
+        TEST_IN_FOLDER(test_looking_for_a_room),
+        TEST_IN_FOLDER(test_snapshot),
+        TEST_IN_FOLDER(test_writing),
+        TEST_IN_FOLDER(test_second_signal),
+        TEST_IN_FOLDER(test_ignored_signal),
+        TEST_IN_FOLDER(test_repeated_cpu_limit),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
