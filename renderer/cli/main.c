@@ -326,9 +326,12 @@ static bool name_frame(const options *o, int frame, options *out_one)
     one.frame = frame;
     one.stats = o->stats ? frames_name(o->stats, frame) : NULL;
     one.photons_file = o->photons_file ? frames_name(o->photons_file, frame) : NULL;
+    one.render.photon_map_file = o->render.photon_map_file ? frames_name(o->render.photon_map_file, frame) : NULL;
+    one.asked.sky_file = o->asked.sky_file ? frames_name(o->asked.sky_file, frame) : NULL;
     *out_one = one;
     return is_whole && one.outfiles && one.scene && (one.stats || !o->stats) &&
-           (one.photons_file || !o->photons_file) && (one.seed_pattern || !o->seed_pattern);
+           (one.photons_file || !o->photons_file) && (one.seed_pattern || !o->seed_pattern) &&
+           (one.render.photon_map_file || !o->render.photon_map_file) && (one.asked.sky_file || !o->asked.sky_file);
 }
 
 static void free_frame(options *one, int outfile_count)
@@ -339,6 +342,8 @@ static void free_frame(options *one, int outfile_count)
     free((void *)(uintptr_t)one->scene);
     free((void *)(uintptr_t)one->stats);
     free((void *)(uintptr_t)one->photons_file);
+    free((void *)(uintptr_t)one->render.photon_map_file);
+    free((void *)(uintptr_t)one->asked.sky_file);
     free((void *)(uintptr_t)one->seed_pattern);
     for (size_t i = 0; i < one->definition_count; i++)
         options_free_definition(&one->definitions[i]);

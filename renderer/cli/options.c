@@ -359,6 +359,8 @@ bool options_override(const options *o, const ag_scene *scene, ag_render_setting
 {
     for (int i = 0; i < o->given_count; i++)
         (void)ag_render_settings_set(settings, o->given[i].name, o->given[i].value); /* options_parse has tried it */
+    if (o->render.photon_map_file)
+        settings->photon_map_file = o->render.photon_map_file; /* with the frame's number in it */
     bool has_own_seed = o->seed_pattern || o->seed_per_frame;
     if (has_own_seed && settings->photon_map_file && settings->photon_seed == AG_PHOTON_SEED_AUTOMATIC)
         settings->photon_seed = settings->seed; /* one map for all frames */

@@ -131,6 +131,16 @@ static void frames_of_one_photon_map_may_have_seeds_of_their_own(void **state)
                "another seed of photons: 10, not 14");
 }
 
+static void frames_may_have_maps_and_skies_of_their_own(void **state)
+{
+    (void)state;
+    expect_end(ARGUMENTS(SMALL, "-q", "--photon-map=m#.map", "--frames=3-4", "-o", "a.%d.exr", BOX), 0, "");
+    expect_listing("a.3.exr a.4.exr m3.map m4.map");
+    expect_end(ARGUMENTS(SMALL, "-q", "--size=8x4", "-o", "sky.03.exr", BOX), 0, "");
+    expect_end(ARGUMENTS(SMALL, "-q", "--sky=sky.%02d.exr", "--frames=3", "-o", "b.#.exr", BOX), 0, "");
+    expect_end(ARGUMENTS(SMALL, "-q", "--sky=sky.%02d.exr", "--frames=4", "-o", "b.#.exr", BOX), 1, "sky.04.exr");
+}
+
 static void what_was_meant_is_named(void **state)
 {
     (void)state;
@@ -162,6 +172,7 @@ int main(void)
         TEST_IN_FOLDER(other_linear_files_hold_the_same),
         TEST_IN_FOLDER(frames_may_have_seeds_of_their_own),
         TEST_IN_FOLDER(frames_of_one_photon_map_may_have_seeds_of_their_own),
+        TEST_IN_FOLDER(frames_may_have_maps_and_skies_of_their_own),
         TEST_IN_FOLDER(what_was_meant_is_named),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
