@@ -1,9 +1,9 @@
 /* disc_kernels.h: the inner loops of an estimate, in plain C and for AVX2: finding a leaf's photons, selecting the
- * nearest, and summing the photons of a disc. Both versions do the same operations on the same numbers, so that
- * their results have the same bits, which tests/photonmap checks. The two are not one text in the compiler's vector
- * types, so that the plain ones, photon by photon, share no code with what they check. The plain ones serve processors
- * without AVX2; the others stay because without them a frame of the Cornell box takes 9 % more CPU time (cornell-box
- * -t 1 --noise 0 --size 160x90 --spp 4 --photons 300000; median of pairs of runs, AMD EPYC).
+ * nearest, and summing the photons of a disc. Both versions do the same operations on the same numbers, so that their
+ * results have the same bits, which tests/photonmap checks. The plain version goes photon by photon: it serves
+ * processors without AVX2, and it checks the other version, with which it shares no code. Without the AVX2 version a
+ * frame of the Cornell box takes 9 % more CPU time (cornell-box -t 1 --noise 0 --size 160x90 --spp 4 --photons 300000;
+ * median of pairs of runs, AMD EPYC).
  * Rests on: Intel, "64 and IA-32 Architectures Optimization Reference Manual", ch. on AVX2.
  * Flow: photon_k_nearest, irradiance_estimate -> [here]. Threads: pure but for what the caller owns. */
 #ifndef AFTERGLOW_DISC_KERNELS_H
@@ -90,10 +90,10 @@ static inline void photon_disc_add(const photon_disc *disc, uint32_t index, phot
 /* Partitions neighbours so that the `wanted` nearest come first, the farthest of these last; 1 <= wanted <= count. */
 void photon_neighbors_quickselect(photon_neighbor *neighbors, uint32_t count, uint32_t wanted);
 
-/* Takes out all but the nearest photons; 1 <= wanted <= found->count. */
+/* Removes all but the `wanted` nearest photons; 1 <= wanted <= found->count. */
 void disc_kernels_keep_nearest(const disc_kernels *kernels, photon_found *found, uint32_t wanted);
 
-/* Takes out the leaves of which nothing is found. */
+/* Removes the leaves that contain no photon found. */
 void photon_found_drop_empty_leaves(photon_found *found);
 
 extern const disc_kernels disc_kernels_plain;

@@ -47,10 +47,12 @@ void emission_guide_reset(emission_guide *guide);
 
 /* Samples a start. out_density: at least 1 - share. */
 emission_start emission_guide_sample(const emission_guide *guide, rng *random, float *out_density);
+/* Returns the density of a start; 1 where starts are uniform. */
 float emission_guide_density(const emission_guide *guide, const emission_start *start);
 
-/* Draws the uniform random numbers of a start; and returns them in the form that light_emit takes. */
+/* Draws the uniform random numbers of a start. */
 emission_start emission_start_draw(rng *random);
+/* Returns the numbers of a start in the form that light_emit takes. */
 emission_numbers emission_start_numbers(const emission_start *start);
 /* Returns the start of these numbers, from the lamp that u_light picks. */
 emission_start emission_start_of(float u_light, const emission_numbers *numbers);

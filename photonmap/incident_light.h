@@ -1,16 +1,18 @@
-/* incident_light.h: from where light comes, as the photons around a point tell: to send gather rays there.
+/* incident_light.h: the directions from which light comes to a point, as the photons around it tell. They guide gather
+ * rays and photon paths.
  * Rests on: Jensen, "Importance Driven Path Tracing using the Photon Map", 1995 (directions from a histogram of photons
  * over the square that the cosine's distribution is warped from); Guo et al., "Primary Sample Space Path Sampling",
  * 2018 (that square as the domain of guiding); Veach, Guibas, "Optimally Combining Sampling Techniques", 1995.
  * Flow: photon_map -> [here] -> final_gather; importons -> [here] -> photon_path. Threads: built by one caller on the
  * run's workers; then read-only.
  *
- * A cell is a run of neighbours in the map's order: all of a subtree. In each, photons are parted by the axis that
- * their normal is nearest to, six ways; whatever else mixes there only costs some of the gain. Each part is a histogram
- * over the unit square that sample_cosine_hemisphere warps to directions: flux already holds the cosine, so that light
- * from everywhere alike fills it evenly, and nothing lies below the horizon. A share of each bin is even, whatever the
- * photons say: what is drawn is the mixture of the two, the density is the mixture's (the balance heuristic), and no
- * ray weighs more than 1 / that share. Light straight from lamps is left out: gather rays do not bring it. */
+ * A cell is a run of neighbours in the map's order: the photons of a subtree. They are divided by the axis nearest to
+ * their normal, six ways; other differences within a cell only cost some of the gain. Each of the six has a histogram
+ * over the unit square that sample_cosine_hemisphere warps to directions. Flux already contains the cosine, so light
+ * from all directions alike fills the histogram evenly, and no bin lies below the horizon. A share of each bin is
+ * uniform, whatever the photons say. Directions are drawn from this mixture and weighted by its density (the balance
+ * heuristic), so no ray weighs more than 1 / that share. Photons straight from lamps are left out, since gather rays do
+ * not bring their light. */
 #ifndef AFTERGLOW_INCIDENT_LIGHT_H
 #define AFTERGLOW_INCIDENT_LIGHT_H
 

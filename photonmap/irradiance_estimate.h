@@ -32,11 +32,11 @@ typedef enum irradiance_extent {
 irradiance_extent irradiance_estimate_find(const photon_map *map, vec3 position, vec3 normal, photon_neighbor *scratch,
                                            uint64_t *in_out_rays, rgb *out_irradiance);
 
-/* irradiance_estimate_find, and how far it reaches: *out_reach_squared is the squared radius out to the (k+1)-th
- * photon, or of the largest disc; where that is NULL, nothing is told. Photons that lie farther away make no difference
- * to the bits of extent and irradiance, nor do those that face the other way (photon_changes.h), nor does geometry
- * beyond IRRADIANCE_REACH_OF_RAYS times that radius. 0: that is not so, for the k-th and the next one are equally far,
- * or the disc was as small as can be. in_out_hint may be NULL. */
+/* irradiance_estimate_find, which also writes its reach: *out_reach_squared (NULL: not wanted) is the squared radius
+ * out to the (k+1)-th photon, or of the largest disc. The bits of extent and irradiance depend neither on photons
+ * farther away, nor on photons that face the other way, nor on geometry beyond IRRADIANCE_REACH_OF_RAYS times that
+ * radius. A reach of 0 promises nothing of this: the k-th and the next photon are equally far, or the disc was the
+ * smallest one. in_out_hint may be NULL. */
 irradiance_extent irradiance_estimate_find_reach(const photon_map *map, vec3 position, vec3 normal,
                                                  photon_neighbor *scratch, photon_search_hint *in_out_hint,
                                                  uint64_t *in_out_rays, rgb *out_irradiance, float *out_reach_squared);
@@ -44,7 +44,7 @@ irradiance_extent irradiance_estimate_find_reach(const photon_map *map, vec3 pos
 /* All rays of an estimate end within 1.2 times its radius; the rest is for rounding. */
 #define IRRADIANCE_REACH_OF_RAYS 1.5f
 
-/* The value alone, for which no rays are counted. */
+/* Returns the irradiance alone, and counts no rays. */
 static inline rgb irradiance_estimate(const photon_map *map, vec3 position, vec3 normal, photon_neighbor *scratch)
 {
     rgb irradiance;

@@ -5,9 +5,9 @@
  * Flow: the pilot's importons -> [here] -> photon_path. Threads: built by one caller on the run's workers; then
  * read-only.
  *
- * Near by, the directions of a cell of importons are a histogram (incident_light). Far from a window they are a bundle
- * too narrow for its bins, but are lines that all pass the window: the point nearest to these lines and their distances
- * from it make a ball, and paths are sent into cones around it. */
+ * The directions of a cell's importons form a histogram (incident_light). Far from a window they are too alike for its
+ * bins, but the importons' lines all pass the window. The point nearest to these lines, and their distances from it,
+ * give a ball; paths are sent into cones around the ball. */
 #ifndef AFTERGLOW_ONWARD_WAYS_H
 #define AFTERGLOW_ONWARD_WAYS_H
 
@@ -25,8 +25,8 @@ typedef struct onward_ways {
     ways_opening *openings;    /* owned, one for each histogram */
 } onward_ways;
 
-/* Takes over the importons, which are from photon_records_create, also on failure: their positions, the sides of the
- * surfaces that they reached, and their directions, as in photons. Without importons no path is guided. Errors:
+/* Takes over the importons, also on failure. They come from photon_records_create and have the position, the normal (on
+ * the side of the surface that they reached) and the direction of photons. Without importons no path is guided. Errors:
  * AG_ERROR_MEMORY, AG_CANCELLED. */
 ag_status onward_ways_create(run_context *run, photon *importons, uint32_t count, onward_ways *out_ways);
 void onward_ways_reset(onward_ways *ways);
@@ -36,7 +36,7 @@ enum { ONWARD_CONES_MAX = 12 };
 /* The density of directions in which light goes on from a point. */
 typedef struct onward_lead {
     incident_guide guide;
-    /* Nested cones around towards.z with these shares; 0 cones: the histogram alone. */
+    /* Nested cones around towards.z, each with its share; without cones the histogram counts alone. */
     uint32_t cone_count;
     frame towards;
     float one_minus_cos[ONWARD_CONES_MAX], sine_squared[ONWARD_CONES_MAX], share[ONWARD_CONES_MAX];

@@ -17,7 +17,7 @@
 
 typedef struct photon {
     float position[3];    /* world */
-    uint32_t flux;        /* W per emitted path's share (times the number of paths emitted), shared exponent */
+    uint32_t flux;        /* W, times the number of paths emitted; shared exponent */
     uint16_t direction;   /* direction of travel, and whether it came by way of a diffuse vertex: arrival_encode */
     uint16_t normal;      /* geometric, on the side it arrived at, octahedral */
     irradiance_slot slot; /* the irradiance here, once it has been requested */
@@ -27,7 +27,8 @@ _Static_assert(sizeof(photon) == 24, "a photon is 24 bytes, as in the paper");
 
 /* --- shared exponents: value = mantissa 2^exponent, mantissas of 8 bits --- */
 
-/* 2^exponent, by its bits, for libm's ldexpf is slow; 0 where it would be denormal, infinite where it is too large. */
+/* Returns 2^exponent, made from its bits, since libm's ldexpf is slow; 0 where it would be denormal, infinity where it
+ * is too large. */
 static inline float power_of_two(int exponent)
 {
     int at_least = exponent > -127 ? exponent : -127, within = at_least < 128 ? at_least : 128;
@@ -89,7 +90,7 @@ static inline rgb flux_decode(uint32_t code)
 static inline vec2 octahedral_encode(vec3 d)
 {
     float sum = fabsf(d.x) + fabsf(d.y) + fabsf(d.z), x = d.x / sum, y = d.y / sum;
-    /* half of all directions are below: no branch could be guessed */
+    /* half of all directions are below, so a branch would be mispredicted */
     float folded_x = (1.0f - fabsf(y)) * copysignf(1.0f, x), folded_y = (1.0f - fabsf(x)) * copysignf(1.0f, y);
     x = float_select(d.z < 0.0f, folded_x, x);
     y = float_select(d.z < 0.0f, folded_y, y);

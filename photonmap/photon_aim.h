@@ -7,8 +7,8 @@
 
 #include "photon_tracing.h"
 
-/* Starts of paths on which light comes to where it is requested, found from there. The value of each is the root of the
- * flux that it represents, its density 1. */
+/* Starts of paths that bring light to where it is requested, found by following paths back from there. The value of
+ * each is the root of the flux that it represents; its density is 1. */
 typedef struct emission_starts {
     emission_trial *trials; /* owned */
     uint32_t count;
@@ -26,12 +26,13 @@ typedef struct photon_aim {
 /* Returns how many trial paths a round has for a map of so many photons. */
 uint32_t photon_aim_round_trials(uint64_t wanted);
 
-/* Learns a guide for photon tracing with these settings, of which nothing is read that photon_aim_apply sets but
- * asked, ways and wanted. starts: reordered; may be empty. share: of the paths, that follow the guide, [0, 1). *out_aim
- * must not be moved. The guide is empty where no trial arrives where light is requested, or where enough paths do
- * without one. wanted is the settings', or, with a guide, at most the number that power alone would have stored before
- * it gave up, since estimates take longer the more photons they find. Of fewer photons than arrive by many paths each
- * tells more of the light than of many by few paths: only a share is stored. Errors: AG_ERROR_MEMORY, AG_CANCELLED. */
+/* Learns a guide for photon tracing with these settings. Of the members that photon_aim_apply sets it reads asked, ways
+ * and wanted alone. starts: reordered; may be empty. share: of the paths that follow the guide, [0, 1). *out_aim must
+ * not be moved. The guide is empty where no trial arrives where light is requested, or where enough paths arrive
+ * without a guide. out_aim->wanted is then that of the settings; with a guide it is at most the number of photons that
+ * tracing by power alone would have stored before it gave up, since estimates take longer the more photons they find.
+ * Photons of many paths tell more of the light than as many photons of few paths, so where a guided path brings many,
+ * only a share of them is stored. Errors: AG_ERROR_MEMORY, AG_CANCELLED. */
 ag_status photon_aim_learn(const scene *s, run_context *run, const photon_tracing_settings *settings,
                            const emission_starts *starts, float share, photon_aim *out_aim);
 void photon_aim_reset(photon_aim *aim);

@@ -1,8 +1,8 @@
 /* photon_block.h: how a finished map keeps its photons: sixteen records of 24 bytes as columns, 384 bytes, so that a
  * search tests a block's positions and normals four or eight at a time and touches nothing else. Photon i of the map is
- * lane i % 16 of block i / 16; the last block's spare lanes have positions that are no numbers, which no comparison
- * finds. Flow: photon_tracing fills records; photon_tree_build turns them into blocks where they lie. Threads: all but
- * the slots is read-only once the map stands. */
+ * lane i % 16 of block i / 16; the last block's unused lanes have NaN positions, which fail every comparison. Flow:
+ * photon_tracing fills records; photon_tree_build turns them into blocks where they lie. Threads: all but the slots is
+ * read-only once the map stands. */
 #ifndef AFTERGLOW_PHOTON_BLOCK_H
 #define AFTERGLOW_PHOTON_BLOCK_H
 
@@ -61,7 +61,7 @@ static inline uint32_t photon_block_flux(const photon_block *blocks, uint32_t in
     return blocks[index / PHOTON_BLOCK_LANES].flux[index % PHOTON_BLOCK_LANES];
 }
 
-/* A number at random that goes with the photon's position, wherever the photon stands in the map. */
+/* Returns a hash of the photon's position, which does not depend on the photon's place in the map. */
 static inline uint64_t photon_block_position_key(const photon_block *blocks, uint32_t index)
 {
     vec3 at = photon_block_position(blocks, index);
@@ -70,7 +70,7 @@ static inline uint64_t photon_block_position_key(const photon_block *blocks, uin
     return hash_combine(hash_combine(bits[0], bits[1]), bits[2]);
 }
 
-/* Squared distances of all lanes, and as bits which of them are no farther than the limit. */
+/* Writes the squared distances of all lanes; returns, as bits, the lanes no farther than the limit. */
 static inline uint32_t photon_block_within(const photon_block *b, const float position[3], float limit,
                                            float out_distance_squared[PHOTON_BLOCK_LANES])
 {
@@ -120,7 +120,7 @@ static inline float photon_block_nearest(const photon_block *b, const float posi
         __m128 y = _mm_sub_ps(_mm_load_ps(&b->position[1][4 * i]), py);
         __m128 z = _mm_sub_ps(_mm_load_ps(&b->position[2][4 * i]), pz);
         d[i] = _mm_add_ps(_mm_add_ps(_mm_mul_ps(x, x), _mm_mul_ps(y, y)), _mm_mul_ps(z, z));
-        least = _mm_min_ps(d[i], least); /* the second operand, where the first is NaN */
+        least = _mm_min_ps(d[i], least); /* min gives the second operand where the first is NaN */
     }
     least = _mm_min_ps(least, _mm_shuffle_ps(least, least, _MM_SHUFFLE(1, 0, 3, 2)));
     least = _mm_min_ps(least, _mm_shuffle_ps(least, least, _MM_SHUFFLE(2, 3, 0, 1)));

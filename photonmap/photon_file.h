@@ -1,7 +1,7 @@
 /* photon_file.h: finished photon maps in a file, mapped by any number of processes, which fill its irradiances
- * together. What was computed for one picture is there for the next: an irradiance depends on the map alone. Flow:
- * photon_map -> [write] -> file -> [open] -> photon_map, irradiance_cache. Threads: one writes or opens; the maps are
- * then as any.
+ * together. An irradiance depends on the map alone, so those of one picture serve the next. Flow: photon_map -> [write]
+ * -> file -> [open] -> photon_map, irradiance_cache. Threads: one thread writes or opens; the maps are then like any
+ * others.
  *
  *     header       what it is, what it was made of, constants of the maps, checksum: never changes
  *     owners       the processes at work on it (claim_owners.h)
@@ -71,7 +71,7 @@ photon_file_result photon_file_read(const run_context *run, const char *path, ph
 /* Returns whether the file is still the one that was opened. It may be truncated or overwritten while it is mapped:
  * data read since this was last true may then not be the maps'. A copy in memory is always intact. */
 bool photon_file_is_intact(const photon_file *file);
-/* A part of that, which costs nothing: whether all that has been read was there. */
+/* Returns whether no part of the mapping has been lost so far: the part of photon_file_is_intact that costs nothing. */
 bool photon_file_has_memory(const photon_file *file);
 
 /* Closes the file, after the maps, when this process holds no claim. {0} is fine. */

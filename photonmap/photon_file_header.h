@@ -5,7 +5,8 @@
 
 #include "photon_file.h"
 
-/* Raise this whenever the layout changes, or which photons are traced: other estimates have another fingerprint. */
+/* Raise this whenever the layout or the tracing of photons changes. A change of the estimates shows in their
+ * fingerprint. */
 enum { PHOTON_FILE_LAYOUT = 22 };
 enum {
     PHOTON_FILE_PAGE = 4096,
@@ -54,7 +55,7 @@ bool photon_file_header_is_ours(const photon_file_header *h, size_t size);
  * why not. got_bytes: of the header. */
 bool photon_file_header_is_valid(const photon_file_header *h, uint64_t got_bytes, uint64_t file_bytes,
                                  const photon_file_key *key, char *message, size_t message_size);
-hash128 photon_file_header_hash(const photon_file_header *h); /* the expected `self` */
+hash128 photon_file_header_hash(const photon_file_header *h); /* Returns what `self` should be. */
 
 /* Sets the offsets of the trees and of the check bytes, from counts and depths. Returns the file's size. */
 uint64_t photon_file_lay_out(photon_file_tree trees[PHOTON_FILE_TREE_COUNT], uint64_t *out_checks_at);

@@ -1,7 +1,7 @@
-/* photon_found.h: the photons that a search has found, leaf by leaf: the squared distances of a leaf's sixteen photons
- * side by side, as their block has all else of them. So choosing the nearest and summing a disc read whole vectors of
- * consecutive memory, and move nothing. Flow: photon_k_nearest -> [here] -> disc_kernels, irradiance_estimate.
- * Threads: each belongs to one. */
+/* photon_found.h: the photons that a search has found, leaf by leaf. The squared distances of a leaf's sixteen photons
+ * lie side by side, as the photons' columns do in their block, so selecting the nearest and summing a disc read whole
+ * vectors of consecutive memory, and move no data. Flow: photon_k_nearest -> [here] -> disc_kernels,
+ * irradiance_estimate. Threads: each belongs to one. */
 #ifndef AFTERGLOW_PHOTON_FOUND_H
 #define AFTERGLOW_PHOTON_FOUND_H
 
@@ -19,14 +19,14 @@ typedef struct photon_found {
     photon_neighbor *scratch; /* [capacity] */
 } photon_found;
 
-/* A worker's next search may begin with this hint of its last one, which changes the time of searches alone. */
+/* What a worker's search tells its next one. It changes the time of searches alone. */
 typedef struct photon_search_hint {
     vec3 position;        /* of the last search */
     float radius_squared; /* of the disc that it found; 0: there was none */
-    uint32_t leaf;        /* that the next point lies in or beside; PHOTON_NONE: not known */
+    uint32_t leaf;        /* in or beside which the next point lies; PHOTON_NONE: not known */
 } photon_search_hint;
 
-/* Borrows scratch memory: photon_neighbors_capacity(wanted). */
+/* Borrows scratch memory for photon_neighbors_capacity(wanted) neighbours. */
 void photon_found_init(photon_found *found, const photon_tree *tree, uint32_t wanted, photon_neighbor *scratch);
 
 /* Finds the `wanted` nearest photons within radius, whose number becomes found->count; `found` is from
@@ -41,7 +41,7 @@ static inline uint32_t photon_found_index(const photon_found *found, uint32_t sl
     return found->leaves[slot / PHOTON_BLOCK_LANES] * PHOTON_BLOCK_LANES + slot % PHOTON_BLOCK_LANES;
 }
 
-/* Takes out a photon. */
+/* Removes a photon. */
 static inline void photon_found_forget_slot(photon_found *found, uint32_t slot)
 {
     found->distances_squared[slot] = NAN;

@@ -40,10 +40,10 @@ typedef struct photon_map {
     /* Radii and exponents, on which all estimates depend, are rounded, and an irradiance is rounded by its photon's
      * position, so that both stay the same where a few photons come and go. */
     bool is_steady;
-    clear_spaces *spaces; /* owned: of the leaves of `tree`, on its surfaces; NULL until a cache is made over the map,
-                             and where nothing is known or memory is short: only rays are spared by them */
-    float *reaches; /* owned, of a steady map: for each irradiance photon whose slot is ready irradiance_reach; 0: not
-                       known */
+    clear_spaces *spaces; /* owned, of the leaves of `tree`: they save rays, and change no bit. NULL until a cache is
+                             made over the map, where nothing is known of the surfaces, and where memory is short */
+    float *reaches; /* owned, of a steady map: of each irradiance photon whose slot is ready the squared reach of its
+                       estimate (irradiance_estimate_find_reach); 0: not known */
 } photon_map;
 
 /* Builds a map from the set's photons, which it takes over, and frees on failure. A map without photons is valid: its
@@ -77,8 +77,9 @@ static inline irradiance_slot *photon_map_slot(const photon_map *map, uint32_t i
 /* Returns the bytes of the photons, the irradiance photons, the trees and the clear spaces. */
 uint64_t photon_map_bytes(const photon_map *map);
 
-/* Makes room for the clear spaces, unless it is there, where the map has photons on surfaces, something is known
- * of what is near them, and `spare` bytes more could be had, for what else is to come. */
+/* Allocates the clear spaces, unless the map has them. It does nothing where the map has no photons or no surfaces,
+ * where nothing is known of what is near them (clear_space_is_told), or where fewer than `spare` bytes would be left
+ * for later allocations. */
 void photon_map_make_spaces(photon_map *map, uint64_t spare);
 void photon_map_drop_spaces(photon_map *map);
 

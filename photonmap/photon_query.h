@@ -7,14 +7,14 @@
 
 #include "photon_tree.h"
 
-/* x, y, z, and nothing: in registers, since a single lane that is stored cannot soon be read back with its
- * neighbours. */
+/* x, y, z and an unused lane. It stays in registers: to store one lane and then load all four would stall the
+ * processor. */
 typedef float photon_lanes __attribute__((vector_size(16)));
 typedef int32_t photon_lane_bits __attribute__((vector_size(16)));
 
 static inline photon_lanes photon_lanes_fill(float value) { return (photon_lanes){value, value, value, value}; }
 
-/* a, but b along the axis. */
+/* Returns a with its component along the axis replaced by b's. */
 static inline photon_lanes photon_lanes_replace(photon_lanes a, photon_lanes b, uint32_t axis)
 {
     static const photon_lane_bits ALONG[3] = {{-1, 0, 0, 0}, {0, -1, 0, 0}, {0, 0, -1, 0}};
@@ -42,11 +42,11 @@ typedef struct photon_query {
 
 #define PHOTON_QUERY_NO_CODE UINT32_MAX
 
-/* Rounding may make a box seem farther than its photons: what is within a hair of the limit is visited. */
+/* Rounding may make a box seem farther than its photons, so boxes a hair beyond the limit are visited, too. */
 static inline float photon_query_hair_beyond(float limit) { return limit * 1.00001f; }
 
-/* The other side of a node's plane, as seen from the box that the visit is in; on the stack, where it is within reach:
- * most is the limit and a hair. */
+/* Pushes the other side of a node's plane, as seen from the box of the visit, where it is no farther than `most`: the
+ * limit and a hair. */
 static inline void photon_query_push(photon_query *q, photon_lanes offset, photon_lanes from_plane, uint32_t axis,
                                      uint32_t node, float most)
 {
@@ -62,7 +62,7 @@ typedef struct photon_subtree {
     uint32_t node;
 } photon_subtree;
 
-/* Goes down to the node so many levels above the leaves that is on the query's side, leaving on the stack the other
+/* Goes down, on the query's side of each plane, to the node `height` levels above the leaves, and pushes the other
  * sides that are within the limit. */
 static inline photon_subtree photon_query_descend(photon_query *q, photon_lanes offset, uint32_t node, uint32_t height,
                                                   float limit)
@@ -103,7 +103,7 @@ static inline bool photon_query_next_leaf(photon_query *q, float limit, uint32_t
     return is_found;
 }
 
-/* Neighbours mostly share a normal: the last answers are kept. */
+/* Returns whether a normal is similar to the query's. Neighbours mostly share one, so the last answers are kept. */
 static inline bool photon_query_has_similar_normal(photon_query *q, uint16_t code)
 {
     if (code == q->similar_code)
@@ -122,8 +122,8 @@ static inline bool photon_query_has_similar_normal(photon_query *q, uint16_t cod
     return false;
 }
 
-/* Offers a block whose nearest photon is that lane, no farther than the nearest so far: it becomes that, or, should its
- * normal not count, the nearest of the block whose normal does. */
+/* Offers a block whose nearest photon is `lane`, no farther than *nearest. *nearest becomes this photon or, where its
+ * normal is not similar, the nearest one of the block with a similar normal, unless that is farther. */
 static inline void photon_query_offer(photon_query *q, uint32_t block, uint32_t lane, float distance_squared,
                                       photon_neighbor *nearest)
 {

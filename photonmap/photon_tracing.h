@@ -8,14 +8,13 @@
  * the lamp by way of traced lobes alone, at least one: LS+D, from an emission of its own. Where panes are direct, light
  * that a pane lets straight through has met no S there: the eye samples it at the lamp.
  *
- * A path that brings much more than others to where light is asked for is split where a diffuse surface scatters it, so
- * that what comes of it are many photons as bright as the rest (Booth, Hendricks, "Importance estimation in forward
- * Monte Carlo calculations", 1984: weight windows).
+ * A path that carries much more than others to where light is requested is split where a diffuse surface scatters it,
+ * so that it leaves many photons as bright as the others' instead of a few bright ones (Booth, Hendricks, "Importance
+ * estimation in forward Monte Carlo calculations", 1984: weight windows).
  *
- * Where something moves, each path has a time of the shutter of its own, so that a map is the mean over the shutter;
- * which light comes at which time is lost. A photon on a moving surface lies where that point of the surface is when
- * the shutter opens, and is looked for there (surface_at_opening): it goes with its surface, and is not smeared over
- * its way. */
+ * Where something moves, each path has its own time of the shutter, so a map holds the mean over the shutter; it does
+ * not tell which light arrives when. A photon on a moving surface lies where that point of the surface is when the
+ * shutter opens, and lookups go there (surface_at_opening), so photons are not smeared along the motion. */
 #ifndef AFTERGLOW_PHOTON_TRACING_H
 #define AFTERGLOW_PHOTON_TRACING_H
 
@@ -69,10 +68,10 @@ typedef struct photon_tracing_settings {
     const importance_map *asked;    /* where light is requested; elsewhere no denser photons than by power alone */
     const importance_map *onward;   /* diffuse surfaces whose light arrives where it is requested */
     const struct onward_ways *ways; /* directions in which surfaces send it there */
-    float stored_share; /* with a guide: the share of the photons that are stored, picked at random and as much
-                           brighter; (0, 1] */
-    float split_above;  /* [W/m]: there a path is split into its flux, of all three colours, times the root of that
-                           importance, over this parts; 0: paths are not split */
+    float stored_share; /* with a guide: the share of the photons that is stored, at random; their flux is divided by
+                           it; (0, 1] */
+    float split_above;  /* [W/m]: a path has its flux, summed over the colours, times the root of the importance onward,
+                           over this as its number of parts; 0: paths are not split */
     float caustic_root; /* the root of importance of a caustic map, whose paths are split at rough traced lobes: the
                            mean over the photons of trials that arrive where light is requested */
     double progress_begin, progress_end; /* of AG_PHASE_PHOTONS */

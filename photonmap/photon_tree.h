@@ -65,11 +65,11 @@ uint32_t photon_tree_leaf(const photon_tree *tree, vec3 position);
 
 enum { PHOTON_TREE_DEPTH_MAX = 32, PHOTON_WALK_AXES = 4 };
 
-/* The path to a leaf with the cells of its nodes, which is kept for the next lookup: that is cheap where its leaf is
+/* The path to the leaf of the last lookup, with the cells of its nodes: the next lookup is cheap where its leaf is
  * near. The fourth axis has no bounds. */
 typedef struct photon_walk {
     const photon_tree *tree;
-    const struct photon_kernels *kernels; /* for many at once: photon_kernels.h; they make no difference but in time */
+    const struct photon_kernels *kernels; /* for many lookups at once (photon_kernels.h); they change the time alone */
     uint32_t way;                         /* to the leaf of the last lookup; 0: there was none */
     vec3 normal;                          /* of that lookup */
     float min_cos;                        /* of that lookup */

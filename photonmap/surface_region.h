@@ -26,9 +26,9 @@ typedef struct surface_region {
 static const uint32_t SURFACE_REGION_OCTANT[SURFACE_REGION_SECTORS] = {0, 1, 3, 2, 7, 6, 4, 5};
 
 /* Finds the region around a point. min_cos: normals with a greater cosine belong to the surface, as for photons. The
- * rays that are cast are added to *in_out_rays, here and below: none is where a clear space near by, which may be
- * NULL, tells what it would meet. Returns false where the surface has neither end nor
- * hole within radius, and where there is no surface at the point. */
+ * rays cast are added to *in_out_rays, here and below. space: a clear space nearby, or NULL; rays whose answer it tells
+ * are not cast. Returns false where the surface has neither an end nor a hole within radius, and where there is no
+ * surface at the point. */
 bool surface_region_find(const scene *s, const clear_space *space, vec3 position, vec3 normal, float min_cos,
                          float radius, uint64_t *in_out_rays, surface_region *out_region);
 
@@ -38,8 +38,7 @@ bool surface_region_find(const scene *s, const clear_space *space, vec3 position
 bool surface_region_reaches_rim(const scene *s, const clear_space *space, vec3 position, vec3 normal, float min_cos,
                                 float radius, uint64_t *in_out_rays);
 
-/* Returns whether the space tells that surface_region_find would return false, whatever else hints at an edge. It is
- * the cheapest of the three. */
+/* Returns whether the space alone tells that surface_region_find would return false: the cheapest of the three. */
 bool surface_region_is_whole(const scene *s, const clear_space *space, vec3 position, vec3 normal, float min_cos,
                              float radius);
 
