@@ -1,7 +1,7 @@
-/* debug_views.h: how the photon map and its cache fared, pixel by pixel: at what the ray through a pixel's middle meets
- * first. Made when the pixels have their samples: nothing of it is in the samples' way.
- * Rests on: Neilson, Yang, TR 04-21, 2004, whose figures show where irradiance was demanded. Flow: maps, cache ->
- * [here] -> film. Threads: the run's workers, a row each. */
+/* debug_views.h: shows how the photon map and its cache fared, pixel by pixel, at the surface that the ray through the
+ * pixel's middle meets first. The views are made after the samples, which they do not slow.
+ * Rests on: Neilson, Yang, TR 04-21, 2004, whose figures show where irradiance was demanded.
+ * Flow: maps, cache -> [here] -> film. Threads: the run's workers, a row each. */
 #ifndef AFTERGLOW_DEBUG_VIEWS_H
 #define AFTERGLOW_DEBUG_VIEWS_H
 

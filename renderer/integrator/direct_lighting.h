@@ -7,12 +7,12 @@
 
 #include "integrator/transport.h"
 
-/* The share of a sample's light, in [0, 1], that reaches the origin of `shadow`: a ray in the sample's direction. */
+/* Returns the share, [0, 1], of a sample's light that reaches the origin of `shadow`, a ray in its direction. */
 rgb direct_light_transmittance(const transport *t, eye_worker *worker, scene_ray shadow, const light_sample *sample);
 
-/* One sample towards a lamp picked for the vertex: reflected radiance. lamp_count and scatter_count: how many samples
- * the caller takes of either technique, on average; it divides by lamp_count itself. scatter_count 0: this technique
- * alone. */
+/* Returns the reflected radiance of one sample towards a lamp that is picked for the vertex. lamp_count and
+ * scatter_count: how many samples the caller takes of either technique, on average; it divides by lamp_count itself.
+ * scatter_count 0: this technique alone. */
 rgb direct_light_from_lamp(const transport *t, eye_worker *worker, const vertex *v, bsdf_lobes lobes, float u_pick,
                            vec2 u, int lamp_count, float scatter_count);
 
@@ -25,12 +25,12 @@ typedef struct lamp_light {
 lamp_light direct_light_sample_lamp(const transport *t, eye_worker *worker, const vertex *v, bsdf_lobes lobes,
                                     float u_pick, vec2 u, int lamp_count, float scatter_count);
 
-/* The weight of radiance met on a lamp by a ray scattered with the given density at `from`, of vertex_light_normal
- * `normal` there. */
+/* Returns the weight of the radiance that a ray meets on a lamp. The ray was scattered with that density at `from`,
+ * where vertex_light_normal is `normal`. */
 float direct_light_scatter_weight(const transport *t, vec3 from, vec3 normal, const vertex *on_lamp,
                                   float pdf_solid_angle, int lamp_count, float scatter_count);
 
-/* The radiance of infinite lights along a ray that meets nothing, weighted as by direct_light_scatter_weight.
+/* Returns the radiance of infinite lights along a ray that meets nothing, weighted as by direct_light_scatter_weight.
  * pdf_solid_angle: the density by which the ray was scattered, or 0 where no sample towards a lamp could stand for it
  * (the eye, smooth lobes), which makes the weight 1. by_group, here and below: the light is added there too, by groups
  * of lamps; or NULL. */

@@ -17,17 +17,17 @@ typedef struct part_shares {
 } part_shares;
 
 typedef struct eye_path {
-    sampler where; /* of the branch: each takes numbers of its own of the same sequences */
+    sampler where; /* the branch's; each branch takes other numbers of the same sequences */
     scene_ray ray; /* to be followed next */
     rgb throughput;
     float share;        /* of the camera sample, (0, 1]: 1 over the number of branches */
-    int vertex;         /* which of its path's the ray will meet, from 0 on */
-    int vertex_key;     /* added to it where random numbers are drawn */
+    int vertex;         /* the number of the vertex that the ray will meet, from 0 on */
+    int vertex_key;     /* added to that number where random numbers are drawn */
     int roulette_after; /* the vertex from which on roulette decides whether the path goes on */
-    int scatterings;    /* so far; going straight through a pane may be none, and changes none of what follows */
-    int first_gathered; /* which of them, counted from 1, was the first by a gathered lobe; 0: none */
-    vec3 scattered_from, scattered_normal; /* the last one's position, and vertex_light_normal there */
-    float scattered_pdf; /* per solid angle; 0: the eye or a smooth lobe, which no shadow ray serves */
+    int scatterings;    /* so far; to pass a pane straight may count as none, and then changes no member below */
+    int first_gathered; /* the number, from 1 on, of the first scattering by a gathered lobe; 0: none */
+    vec3 scattered_from, scattered_normal; /* position and vertex_light_normal of the last scattering */
+    float scattered_pdf; /* per solid angle; 0: the eye or a smooth lobe, for which no shadow ray can stand */
     int scatter_count;   /* how many branches left that position */
     bool wants_parts;
     part_shares parts; /* valid where wants_parts */
@@ -35,16 +35,16 @@ typedef struct eye_path {
 
 eye_path eye_path_begin(const camera_sample *from, int roulette_after, bool wants_parts);
 
-/* The vertex at which random numbers are drawn. */
+/* Returns the number of the vertex by which random numbers are drawn. */
 static inline int eye_path_key(const eye_path *path) { return path->vertex + path->vertex_key; }
 
-/* Whether the path has as many scatterings as settings allow: it may go on straight through panes alone. */
+/* Returns whether the path has as many scatterings as the settings allow, so that it goes on through panes alone. */
 static inline bool eye_path_is_last(const transport *t, const eye_path *path)
 {
     return path->scatterings >= t->settings->max_depth;
 }
 
-/* The random number that picks the lobe by which the path goes on. */
+/* Returns the random number that picks the lobe by which the path goes on. */
 static inline float eye_path_u_lobe(const eye_path *path)
 {
     return sampler_2d(&path->where, SAMPLE_LOBE, eye_path_key(path)).x;
@@ -69,7 +69,7 @@ void eye_path_add_direct(const transport *t, eye_worker *worker, const eye_path 
                          bsdf_lobes lobes, int scatter_count, eye_sample *in_out_sample);
 
 /* Sends the path on from the vertex by one of these lobes, as one of branch_count branches from there; u_lobe in [0, 1)
- * picks it. Returns false where the path ends: by the lobes, by roulette, or because it has had all its scatterings. */
+ * picks it. Returns false where the path ends: by the lobes, by roulette, or by the limit of scatterings. */
 bool eye_path_go_on(const transport *t, const vertex *v, bsdf_lobes lobes, float u_lobe, int branch_count,
                     eye_path *in_out_path);
 

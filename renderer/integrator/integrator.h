@@ -11,21 +11,21 @@ struct ag_rendering;
 
 /* Each function may be NULL, which does nothing, but for sample. */
 typedef struct integrator {
-    bool has_photon_map;  /* it traces photons: their settings, layers and statistics mean something */
+    bool has_photon_map;  /* it traces photons, so that their settings, layers and statistics apply */
     bool splits_samples;  /* its samples tell cost and variance of their gather rays and light samples, so that each
                              block of the picture can choose how many there are (film/splitting.h) */
     float direct_guiding; /* the default of that setting */
 
-    /* Called once, before all tiles: makes what they read, in the rendering, and refers to it in its transport. Errors:
-     * AG_ERROR_MEMORY, AG_CANCELLED, those of a photon map's file. */
+    /* Called once, before all tiles: makes what tiles read, in the rendering, and refers to it in the transport.
+     * Errors: AG_ERROR_MEMORY, AG_CANCELLED, those of a photon map's file. */
     ag_status (*prepare)(struct ag_rendering *r);
-    /* Makes what the worker has of its own, of full size, so that nothing can fail while tiles run; false when out of
-     * memory. eye_workers_destroy frees it. */
+    /* Allocates the worker's own memory at full size, so that nothing can fail while tiles run; returns false when out
+     * of memory. eye_workers_destroy frees it. */
     bool (*reserve)(const transport *t, eye_worker *worker);
 
-    /* Called before and after a pass, which is one ag_rendering_continue. After a whole one each pixel has as many
-     * samples as settings and film say, so what is learned from them for the next is the same for any number of
-     * threads. end_pass is left out where the pass was cancelled or failed. Errors: AG_ERROR_MEMORY, AG_CANCELLED. */
+    /* Called before and after a pass, which is one ag_rendering_continue. After a whole pass each pixel has as many
+     * samples as settings and film say, so what is learned from them for the next pass is the same for any number of
+     * threads. end_pass is not called where the pass was cancelled or failed. Errors: AG_ERROR_MEMORY, AG_CANCELLED. */
     ag_status (*begin_pass)(struct ag_rendering *r);
     ag_status (*end_pass)(struct ag_rendering *r);
 
@@ -46,7 +46,7 @@ typedef struct integrator {
 INTEGRATOR_LIST(INTEGRATOR_DECLARATION)
 #undef INTEGRATOR_DECLARATION
 
-/* The integrator of that kind; NULL for a number that is no integrator's, which render_settings_check refuses. */
+/* Returns the integrator of that kind; NULL for any other number, which render_settings_check refuses. */
 const integrator *integrator_of(ag_integrator kind);
 
 #endif

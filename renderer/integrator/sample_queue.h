@@ -33,9 +33,9 @@ static inline bool sample_queue_is_full(const sample_queue *q)
  * samples of a pixel are begun in their order. */
 eye_sample *sample_queue_begin(sample_queue *q, size_t pixel, bool with_layers);
 
-/* Adds all samples to their pixels, in their order; the queue is empty then. gathered: [count], what is still to be
- * added to each, black afterwards; or NULL. gathered_group: which group of lights it is of. Returns how many were not
- * finite: they count as black. */
+/* Adds all samples to their pixels, in their order; the queue is empty then. gathered: [count], the light still to be
+ * added to each, black afterwards; or NULL. gathered_group: the group of lights that it belongs to. Returns the number
+ * of samples that were not finite, which count as black. */
 uint32_t sample_queue_deliver(sample_queue *q, gathered_light *gathered, uint32_t gathered_group, ag_film *film);
 
 #endif

@@ -22,13 +22,13 @@ typedef enum sample_use {
     SAMPLE_GATHER,
     SAMPLE_ROULETTE,
     SAMPLE_USE_COUNT,
-    /* The time of the path, which its first vertex alone asks for: there this is a number that the second vertex leaves
-     * free, for what that would mean is a point on the film. So pictures of scenes without motion keep their bits. */
+    /* The time of the path, drawn at its first vertex alone. It takes the numbers of SAMPLE_PIXEL at the second vertex,
+     * where no point on the film is drawn, so other draws keep their numbers. */
     SAMPLE_TIME = SAMPLE_USE_COUNT + SAMPLE_PIXEL
 } sample_use;
 
 typedef struct sampler {
-    uint64_t key;         /* of seed and pixel: for what is random only */
+    uint64_t key;         /* of seed and pixel: for numbers that are random alone */
     uint64_t block_key;   /* of seed and block of pixels */
     uint32_t morton;      /* the pixel's index in its block, in Morton order */
     uint32_t sample;      /* of the pixel */
@@ -37,10 +37,10 @@ typedef struct sampler {
 
 enum { SAMPLER_BLOCK_BITS = 8 }; /* a block: 2^this pixels wide and high */
 
-/* The smallest n with 2^n >= count; count >= 1. */
+/* Returns the smallest n with 2^n >= count; count >= 1. */
 static inline uint32_t sampler_bits(uint32_t count) { return count > 1 ? 32 - (uint32_t)__builtin_clz(count - 1) : 0; }
 
-/* The low 8 bits of each, interlaced. */
+/* Returns the low 8 bits of each, interlaced. */
 static inline uint32_t sampler_morton(uint32_t x, uint32_t y)
 {
     uint32_t both = (x & 0xffu) | (y & 0xffu) << 16;
@@ -59,8 +59,8 @@ static inline sampler sampler_make(uint64_t seed, int x, int y, uint32_t sample,
                      sampler_morton(column, row), sample, sample_bits};
 }
 
-/* The sampler of one of 2^branch_bits branches that a sample's path is split into: together they run through the
- * sequences as so many more samples would. Not for a vertex and use that the whole sample draws for. */
+/* Returns the sampler of one of 2^branch_bits branches into which a sample's path is split: together they run through
+ * the sequences as that many samples would. Not for a vertex and use that the whole sample draws for. */
 static inline sampler sampler_branch(const sampler *whole, uint32_t branch_bits, uint32_t branch)
 {
     sampler s = *whole;
@@ -69,8 +69,8 @@ static inline sampler sampler_branch(const sampler *whole, uint32_t branch_bits,
     return s;
 }
 
-/* The sampler of a sample whose number is shifted, of a pixel that has up to 2^number_bits numbers of count each: those
- * that it draws then follow the ones that its pixel drew by other counts. */
+/* Returns the sampler of a sample that draws `count` numbers for each use, where its pixel draws up to 2^number_bits in
+ * all. shift: to be added to the sample's number, so that its draws follow those of samples with other counts. */
 static inline sampler sampler_shifted(const sampler *whole, uint32_t shift, uint32_t number_bits, uint32_t count)
 {
     sampler s = *whole;
@@ -81,7 +81,7 @@ static inline sampler sampler_shifted(const sampler *whole, uint32_t shift, uint
 
 static inline uint32_t sampler_reverse_bits(uint32_t x)
 {
-    x = x << 16 | x >> 16; /* which compilers turn into vectors, a swap of bytes they do not all */
+    x = x << 16 | x >> 16; /* shifts, since not all compilers vectorise a swap of bytes */
     x = (x & 0x00ff00ffu) << 8 | (x >> 8 & 0x00ff00ffu);
     x = (x & 0x0f0f0f0fu) << 4 | (x >> 4 & 0x0f0f0f0fu);
     x = (x & 0x33333333u) << 2 | (x >> 2 & 0x33333333u);
@@ -104,9 +104,9 @@ static inline uint32_t sampler_scramble(uint32_t x, uint32_t seed)
     return sampler_reverse_bits(sampler_scramble_reversed(sampler_reverse_bits(x), seed));
 }
 
-/* The second Sobol dimension, its bits reversed: column j of its matrix is row j of Pascal's triangle modulo 2, where
- * (Lucas) those entries are 1 whose number's bits are among j's; so a bit of the result is the sum of the index's bits
- * whose numbers have all of its own number's. */
+/* Returns the second Sobol dimension with its bits reversed. Column j of its matrix is row j of Pascal's triangle
+ * modulo 2. By Lucas' theorem entry i of that row is 1 where i has no bit that j has not. Bit i of the result is
+ * therefore the sum, modulo 2, of the index's bits j for which j has all bits of i. */
 static inline uint32_t sampler_sobol_1_reversed(uint32_t x)
 {
     x ^= x >> 1 & 0x55555555u;
@@ -119,7 +119,7 @@ static inline uint32_t sampler_sobol_1_reversed(uint32_t x)
 
 /* The numbers that a sample draws for a use at a vertex of the path. */
 typedef struct sampler_sequence {
-    uint64_t first; /* index of the first in the whole sequence, of which there is one for each 2^32 */
+    uint64_t first; /* index of the first number; each 2^32 indices have a sequence of their own */
     uint64_t use_key, block_key, high;
     uint32_t shuffle, scramble_x, scramble_y;
 } sampler_sequence;
@@ -143,7 +143,7 @@ static inline sampler_sequence sampler_sequence_make(const sampler *s, sample_us
     return made;
 }
 
-/* The pair of numbers at an index of the whole sequence, given the index's low bits. */
+/* Returns the pair of numbers at an index of the sequence, given the index's low bits. */
 static inline vec2 sampler_sequence_of_index(const sampler_sequence *s, uint32_t index)
 {
     uint32_t shuffled = sampler_scramble(index, s->shuffle);
@@ -152,7 +152,7 @@ static inline vec2 sampler_sequence_of_index(const sampler_sequence *s, uint32_t
     return (vec2){(float)(int32_t)(x >> 8) * 0x1p-24f, (float)(int32_t)(y >> 8) * 0x1p-24f};
 }
 
-/* Number i of them, in [0,1)^2. */
+/* Returns number i of the sequence, in [0,1)^2. */
 static inline vec2 sampler_sequence_at(sampler_sequence *s, uint32_t i)
 {
     uint64_t index = s->first + i;
@@ -161,7 +161,7 @@ static inline vec2 sampler_sequence_at(sampler_sequence *s, uint32_t i)
     return sampler_sequence_of_index(s, (uint32_t)index);
 }
 
-/* Number i of the `count` that the sample draws for a use at a vertex of the path, in [0,1)^2. */
+/* Returns number i of the `count` that the sample draws for a use at a vertex of the path, in [0,1)^2. */
 static inline vec2 sampler_2d_of(const sampler *s, sample_use use, int vertex, uint32_t count, uint32_t i)
 {
     sampler_sequence sequence = sampler_sequence_make(s, use, vertex, count);

@@ -15,7 +15,7 @@ static const float SHADING_LOW_CONTRIBUTION = 0.03f;
 enum { SHADING_ROULETTE_AFTER = 4 };
 
 /* Adds the radiance along the ray to a sample that has nothing in it but its bounds and room for layers. Gathered light
- * is not yet in it: the worker's batch has that once it is resolved. */
+ * comes later, from the worker's batch once that is resolved. */
 void shading_radiance(const transport *t, eye_worker *worker, const camera_sample *from, eye_sample *in_out);
 
 #endif

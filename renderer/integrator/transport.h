@@ -27,10 +27,10 @@ typedef struct transport {
     const aov_layout *layout;  /* what the film wants beside radiance */
     bool wants_layers;         /* of each sample: more than its radiance */
     bool wants_groups;         /* light by the groups of its lamps */
-    bool has_lights;           /* any with power */
-    bool can_meet_lights;      /* area or infinite ones: those that scattered rays find */
+    bool has_lights;           /* there are lights with power */
+    bool can_meet_lights;      /* there are area or infinite lights, which scattered rays find */
     bool panes_are_direct;     /* there are panes, and light straight through them is direct light (bsdf.h) */
-    float pixel_share;         /* of a pixel, what textures are filtered over for a sample; 0: they are not */
+    float pixel_share;         /* the share of a pixel that textures are filtered over for a sample; 0: they are not */
     float gather_min_distance; /* a gather ray that hits nearer than this does not use the cache, scene units */
 } transport;
 
@@ -44,7 +44,7 @@ typedef struct eye_worker {
     arena *scratch;                        /* for neighbours; what render.c has tried out beforehand always fits */
     gather_batch *batch;                   /* of the samples under way; NULL for path tracing */
     struct sample_queue *queue;            /* those samples */
-    uint64_t cost_apart;                   /* of whatever samples' detours, in all */
+    uint64_t cost_apart;                   /* of the detours of all samples, which eye_worker_cost leaves out */
 } eye_worker;
 
 /* The cost of a worker's rays so far in quarters of a gather ray's time, as measured in five rooms. Detours are left
@@ -64,8 +64,8 @@ typedef struct sample_counts {
     int scatter;               /* by scattering, 0 where that cannot meet a lamp */
     float scatter_probability; /* a single sample by scattering is taken with this probability; else 1 */
 } sample_counts;
-/* There is a sample by scattering for four towards lamps. Fewer of these have one for certain at a path's first surface
- * (is_first), and by chance behind it, where it costs as much and brings less. */
+/* Returns one sample by scattering for every four towards lamps. For fewer of these, one is taken at a path's first
+ * surface (is_first), and one by chance behind it, where a sample costs as much and brings less. */
 sample_counts transport_sample_counts(const transport *t, uint32_t lights, bool is_first);
 
 /* Follows a ray of unit direction to the first surface that scatters. */
@@ -76,18 +76,18 @@ bool transport_trace(const transport *t, eye_worker *worker, scene_ray ray, vert
 bool transport_meet(const transport *t, eye_worker *worker, scene_ray ray, vertex *out_vertex);
 void transport_complete(const transport *t, vertex *in_out_vertex);
 
-/* Follows it on through panes, where they are direct, to the first other surface. transmittance is the whole way's,
- * that of the panes with it; hit.distance that of its last stretch. false also where nothing is left of the light. */
+/* Follows a ray as transport_trace does, and straight through panes where they are direct. out_vertex->transmittance
+ * includes the panes; hit.distance is the last stretch's. Returns false also where no light is left. */
 bool transport_trace_through_panes(const transport *t, eye_worker *worker, scene_ray ray, vertex *out_vertex);
 
-/* Whether a sample of the vertex that is_straight counts as no scattering. */
+/* Returns whether a sample of the vertex counts as no scattering where it is_straight. */
 static inline bool transport_is_open_pane(const transport *t, const vertex *v)
 {
     return t->panes_are_direct && v->scattering.is_pane;
 }
 
-/* The ray that leaves a vertex by scattering. Behind the first lobe that is not smooth the way back to the lamp passes
- * slabs straight (slab_faces.h), as shadow rays and photons do; what the eye sees directly, or in mirrors, is bent. */
+/* Returns the ray that leaves a vertex by scattering. From the first lobe on that is not smooth, rays pass slabs
+ * straight (slab_faces.h), as shadow rays and photons do; what the eye sees directly, or in mirrors, is refracted. */
 static inline scene_ray transport_scattered_ray(const transport *t, const vertex *v, vec3 direction, bool is_delta)
 {
     scene_ray ray = vertex_ray(v, direction);
@@ -95,18 +95,18 @@ static inline scene_ray transport_scattered_ray(const transport *t, const vertex
     return ray;
 }
 
-/* The cone that textures are filtered over along the ray of a sample of the vertex. */
+/* Returns the cone over which textures are filtered along the ray of a sample of the vertex. */
 ray_cone transport_scattered_cone(const transport *t, const vertex *v, const bsdf_sample *next);
 
-/* The cone of gather rays, which have no sample of their own to take a density from. */
+/* Returns the cone of gather rays, for which no sample of the vertex tells a density. */
 static inline ray_cone transport_gather_cone(const vertex *v)
 {
     const ray_cone *c = &v->arrived.cone;
     return ray_cone_is_wide(c) ? (ray_cone){fabsf(c->width), RAY_CONE_DIFFUSE_SPREAD, true} : *c;
 }
 
-/* Roulette: whether a path that carries so much goes on, by a number in [0, 1); what survives carries the others'
- * share. */
+/* Roulette: returns whether a path with this throughput goes on. u: a random number in [0, 1). The throughput of a
+ * survivor is divided by the probability to survive. */
 static inline bool transport_survives(rgb *in_out_throughput, float u)
 {
     float survival = fminf(1.0f, rgb_max(*in_out_throughput));
@@ -116,14 +116,14 @@ static inline bool transport_survives(rgb *in_out_throughput, float u)
     return true;
 }
 
-/* The caustic map's light at a diffuse vertex: reflected radiance. */
+/* Returns the caustic map's light at a diffuse vertex: reflected radiance. */
 rgb transport_caustics(const transport *t, eye_worker *worker, const vertex *v);
 
-/* How often caustics are to be asked for where this share of them reaches the eye, [0, 1]. */
+/* Returns the probability with which the map is to be asked for caustics of which this share, [0, 1], is seen. */
 float transport_caustic_probability(const transport *t, float share_seen);
 
-/* An estimate of transport_caustics, equal on average, that asks the map with this probability; u is a random number in
- * [0, 1). */
+/* Returns an estimate of transport_caustics, right on average, that asks the map with this probability. u: a random
+ * number in [0, 1). */
 rgb transport_some_caustics(const transport *t, eye_worker *worker, const vertex *v, float probability, float u);
 
 #endif

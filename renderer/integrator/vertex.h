@@ -1,6 +1,6 @@
 /* vertex.h: a vertex of a camera path or gather ray, and all that follows from its lying on a surface: rays that leave
- * it, its emission, where its photons lie. Integrators ask these functions and read its BSDF; of the hit itself they
- * read no more than layers and fans of rays need. So a vertex in a medium has its place here.
+ * it, its emission, where its photons lie. Integrators use these functions and read the vertex's BSDF; of the hit
+ * itself they read no more than layers and fans of rays need. A vertex in a medium would therefore have its place here.
  * Flow: transport traces rays to vertices -> [here] -> integrators. Threads: pure functions. */
 #ifndef AFTERGLOW_VERTEX_H
 #define AFTERGLOW_VERTEX_H
@@ -12,19 +12,19 @@ typedef struct vertex {
     surface_hit hit;
     bsdf scattering;
     scene_ray arrived; /* of unit direction, in the medium of its last stretch */
-    rgb transmittance; /* of the way here: set also where the ray escapes, and then nothing else is */
+    rgb transmittance; /* of the way here; where the ray escapes this member alone is set */
     const light *lamp; /* the area light that shines there, or NULL */
 } vertex;
 
 static inline vec3 vertex_position(const vertex *v) { return v->hit.position; }
 
-/* The ray that leaves the vertex in a unit direction, in the medium of that side. */
+/* Returns the ray that leaves the vertex in a unit direction, in the medium of that side. */
 static inline scene_ray vertex_ray(const vertex *v, vec3 direction)
 {
     return surface_ray(&v->hit, v->arrived, direction);
 }
 
-/* The ray that goes on straight, as if the surface were not there. */
+/* Returns the ray that goes on straight, as if the surface were not there. */
 static inline scene_ray vertex_ray_straight(const vertex *v) { return scene_ray_continue(&v->hit, &v->arrived); }
 
 /* Carries the cone of the ray that has arrived to the vertex, and finds the footprint of textures there. */
@@ -36,14 +36,14 @@ static inline void vertex_note_footprint(vertex *v)
     v->hit.footprint = ray_cone_footprint(&v->arrived.cone, v->arrived.direction);
 }
 
-/* The geometric normal on the side that the ray came from, unit. */
+/* Returns the geometric normal on the side that the ray came from, unit. */
 vec3 vertex_facing_normal(const vertex *v);
 
-/* The normal by which a lamp is picked for these lobes; zero where they take light from all sides: see
- * scene_pick_light. */
+/* Returns the normal by which a lamp is picked for these lobes (scene_pick_light); zero where they take light from all
+ * sides. */
 vec3 vertex_light_normal(const vertex *v, bsdf_lobes lobes);
 
-/* The radiance that the vertex itself emits back along the ray that has arrived. */
+/* Returns the radiance that the vertex itself emits back along the ray that has arrived. */
 rgb vertex_emission(const scene *s, const vertex *v);
 
 /* A point where a vertex's photons lie, and its geometric normal on the side that the ray came from: see

@@ -11,11 +11,11 @@ typedef struct bvh bvh;
  * meshes are shared with Embree, not copied. Trees of s->before with the same surfaces are shared by both scenes, and
  * refer to s from now on, also after a failure. Adds to *reuse. */
 ag_status bvh_create(const scene *s, run_context *run, const char *isa, scene_reuse *reuse, bvh **out_bvh);
-/* Makes the trees refer to a scene again, which owns them. NULL is fine. */
+/* Makes the trees refer to the scene that owns them again. NULL is fine. */
 void bvh_point_at(const bvh *b, const scene *s);
 void bvh_destroy(bvh *b); /* NULL is fine */
 
-/* Returns the bytes that Embree holds for it, and for others that share its trees, without this library's buffers. */
+/* Returns the bytes that Embree holds for the tree, and for others that share it, without this library's buffers. */
 uint64_t bvh_memory_bytes(const bvh *b);
 
 /* Returns the instruction set that the kernels were limited to: "avx2", ... */

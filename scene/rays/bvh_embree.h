@@ -1,5 +1,5 @@
-/* bvh_embree.h: what bvh_embree.c, which builds it, and rays_embree.c, which casts rays at it, know of a bvh. Private
- * to them. Threads: read-only once it is built. */
+/* bvh_embree.h: the inside of a bvh, which bvh_embree.c builds and into which rays_embree.c casts rays. Private to the
+ * two. Threads: read-only once it is built. */
 #ifndef AFTERGLOW_BVH_EMBREE_H
 #define AFTERGLOW_BVH_EMBREE_H
 

@@ -14,17 +14,18 @@
 typedef enum ray_alpha_rule {
     RAY_PASSES_ALPHA,     /* stops it by chance, as much as is there: light */
     RAY_MEETS_ALPHA,      /* stops it wherever anything is there: the ray looks for surfaces */
-    RAY_MEETS_EMPTY_ALPHA /* stops it everywhere, where nothing is there too: for how far such a surface goes */
+    RAY_MEETS_EMPTY_ALPHA /* stops it everywhere, also where nothing is there: the ray looks for the extent of such a
+                             surface */
 } ray_alpha_rule;
 
 /* A ray; not named `ray`, which is a name of variables. */
 typedef struct scene_ray {
     vec3 origin, direction; /* world; whoever wants the direction unit says so */
     float time;             /* of the shutter, [0, 1] from its opening to its closing */
-    uint32_t medium;        /* that it starts in; SCENE_NO_MEDIUM: nothing that absorbs */
+    uint32_t medium;        /* in which it starts; SCENE_NO_MEDIUM: nothing absorbs */
     ray_alpha_rule alpha_rule;
     bool slabs_are_panes; /* light that may pass slabs of glass straight (slab_faces.h); else they bend it */
-    bool skips_uv;        /* where no texture in the scene reads a hit's uv, nor does who casts it: it may be missing */
+    bool skips_uv;        /* a hit's uv may be missing: neither a texture of the scene nor the caller reads it */
     ray_cone cone;        /* over which textures are filtered; all zero: none is */
 } scene_ray;
 

@@ -13,7 +13,7 @@
 /* All zero: a ray without a cone, for which textures are not filtered. */
 typedef struct ray_cone {
     float width;    /* across the ray at its origin, scene units; below 0 behind a focus */
-    float spread;   /* what width grows by along the ray, per length; below 0 towards a focus */
+    float spread;   /* growth of the width along the ray, per length; below 0 towards a focus */
     bool is_coarse; /* of a gather ray or photon: detail in the cone is of no interest */
 } ray_cone;
 
@@ -32,7 +32,7 @@ struct surface_hit;
 
 static inline bool ray_cone_is_wide(const ray_cone *c) { return c->width != 0.0f || c->spread != 0.0f; }
 
-/* Returns the cone at a distance along the ray; its width there is its footprint's. */
+/* Returns the cone at a distance along the ray. */
 static inline ray_cone ray_cone_at(const ray_cone *c, float distance)
 {
     return (ray_cone){c->width + c->spread * distance, c->spread, c->is_coarse};

@@ -32,7 +32,8 @@ static inline vec3 ray_fan_direction(const ray_fan *f, uint32_t i)
     return (vec3){f->direction[0][i], f->direction[1][i], f->direction[2][i]};
 }
 
-/* scene_intersect of all rays of a fan, with infinite max_distance; and the full hit of one that met something. */
+/* Casts all rays of a fan as scene_intersect does, with infinite max_distance; ray_fan_hit writes the full hit of a ray
+ * that met something. */
 void scene_intersect_fan(const scene *s, ray_fan *f);
 void ray_fan_hit(const scene *s, const ray_fan *f, uint32_t i, surface_hit *out_hit);
 

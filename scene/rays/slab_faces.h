@@ -1,7 +1,7 @@
 /* slab_faces.h: which surfaces are faces of slabs, plates of smooth glass that are thin beside their extent, and which
  * rays pass such a slab straight: those that enter by one face and whose straight continuation leaves by another of the
- * same material with the opposite normal, with nothing between. So it is the same for a line in both of its directions:
- * shadow rays, scattered rays and photons ask alike. Where the line leaves otherwise (by a rim, into a frame) or the
+ * same material with the opposite normal, with nothing between. The answer is the same for both directions of a line,
+ * and for shadow rays, scattered rays and photons. Where the line leaves otherwise (by a rim, into a frame) or the
  * glass is as thick as a block, light is refracted and traced.
  * Rests on: material/slab.h for what a slab lets through.
  * Flow: scene_commit finds the faces; transmittance.c asks where rays meet them. Threads: read-only once found. */

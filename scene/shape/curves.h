@@ -1,7 +1,7 @@
 /* curves.h: hair, grass and thread: cubic Bezier curves with a width; what shape.c asks of them.
  * Rests on: Pharr, Jakob, Humphreys, "Physically Based Rendering", 4th ed., 2023, 6.7 (types, parametrisation); for
- * round ones Reshetov, Luebke, "Phantom Ray-Hair Intersector", 2018: they are tubes here, which in pbrt are flat to
- * rays. Flow: shape.c -> [here]. Embree casts the rays, points are recomputed here. Threads: read-only once
+ * round ones Reshetov, Luebke, "Phantom Ray-Hair Intersector", 2018. Round curves are tubes here; in pbrt they are flat
+ * and face the ray. Flow: shape.c -> [here]. Embree casts the rays, points are recomputed here. Threads: read-only once
  * committed. */
 #ifndef AFTERGLOW_CURVES_H
 #define AFTERGLOW_CURVES_H

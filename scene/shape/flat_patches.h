@@ -1,4 +1,4 @@
-/* flat_patches.h: the flat parts of a mesh: triangles of one plane that hang together by their edges.
+/* flat_patches.h: the flat parts of a mesh: triangles of one plane that are connected by their edges.
  * Flow: a mesh -> [here] -> rays/slab_faces.c, which looks for the faces of panes. Threads: pure functions. */
 #ifndef AFTERGLOW_FLAT_PATCHES_H
 #define AFTERGLOW_FLAT_PATCHES_H
@@ -12,8 +12,8 @@
 
 typedef struct flat_patch {
     vec3 normal;               /* unit, of either side */
-    vec3 extent;               /* of a box around it, along the axes */
-    float area;                /* in squared units of the mesh's space, as extent is in units of it */
+    vec3 extent;               /* of a box around it, along the axes, in units of the mesh's space */
+    float area;                /* in squares of these units */
     uint32_t largest_triangle; /* of its own */
 } flat_patch;
 

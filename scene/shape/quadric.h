@@ -7,7 +7,7 @@
 
 #include "shape/shape.h"
 
-/* Each as the function of shape.h that begins with shape_. The shape is no mesh. */
+/* Each does what the function of shape.h with shape_ in place of quadric_ does. The shape is a quadric. */
 void quadric_commit(shape *s);
 float quadric_area(const shape *s); /* needs no commit */
 void quadric_find_bounds(const shape *s, vec3 *out_min, vec3 *out_max);
@@ -15,7 +15,7 @@ surface_sample quadric_sample_area(const shape *s, vec2 u);
 float quadric_pdf_area(const shape *s, vec3 geometric_normal);
 void quadric_surface_at(const shape *s, vec3 position, bool with_uv, surface_hit *out_hit);
 bool quadric_bare_point_at(const shape *s, vec3 position, vec3 *out_position, vec3 *out_geometric_normal);
-/* Nearest hit of a committed sphere, cylinder or disk in (t_min, t_max); false where there is none. */
+/* Finds the nearest hit of a committed sphere, cylinder or disk in (t_min, t_max); false where there is none. */
 bool shape_intersect_quadric(const shape *s, vec3 origin, vec3 direction, float t_min, float t_max, float *out_t);
 
 #endif

@@ -6,7 +6,8 @@
 
 #include "surface.h"
 
-/* World space. Where uvs say nothing (a seam, a pole, one uv for a whole triangle) dpdu and dpdv are unit and any. */
+/* World space. Where uvs give no direction (a seam, a pole, one uv for a whole triangle) dpdu and dpdv are any two unit
+ * tangents. */
 typedef struct surface_differentials {
     vec3 dpdu, dpdv;
     vec3 dndu, dndv; /* of the unit shading normal, across it */
@@ -14,11 +15,12 @@ typedef struct surface_differentials {
 
 surface_differentials surface_differentials_at(const scene *s, const surface_hit *hit);
 
-/* dpdu and dpdv alone. false: uvs say nothing there. */
+/* Writes dpdu and dpdv alone. Returns false where uvs give no direction. */
 bool surface_uv_axes(const scene *s, const surface_hit *hit, vec3 *out_dpdu, vec3 *out_dpdv);
 
-/* Along which the surface's u and v grow there, in world space, unless it is a mesh with tangents of its own: those,
- * and across them on v's side. Worked out anew at each call. Where there are none, any that lie in the surface. */
+/* Writes the tangents along which u and v grow at the hit, in world space; of a mesh with tangents of its own, that
+ * tangent and the one across it on v's side. Where uvs give no direction, any two tangents. Each call computes them
+ * anew. */
 void surface_tangents(const scene *s, const surface_hit *hit, vec3 *out_dpdu, vec3 *out_dpdv);
 
 #endif
