@@ -33,7 +33,7 @@ void photon_arrival_complete(const scene *s, const photon_tracing_settings *sett
 static inline surface_rest photon_arrival_rest(const scene *s, const photon_arrival *at)
 {
     surface_rest rest = {at->hit.position, at->hit.geometric_normal, 1.0f};
-    if (at->hit.instance_index != SCENE_NO_INSTANCE)
+    if (s->has_motion)
         rest = surface_at_opening(s, &at->hit);
     if (vec3_dot(at->hit.geometric_normal, at->arrived) > 0.0f)
         rest.geometric_normal = vec3_negate(rest.geometric_normal);

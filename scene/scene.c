@@ -14,6 +14,7 @@
 #include "scene_extent.h"
 #include "scene_names.h"
 #include "shape/curves.h"
+#include "shape/mesh_motion.h"
 #include "status.h"
 
 #include <stdlib.h>
@@ -405,7 +406,7 @@ static ag_status list_object_shapes(scene *s)
 void scene_set_camera(scene *s, const camera *c)
 {
     s->camera = *c;
-    s->has_motion = s->camera.is_moving || s->instance_step_count > s->instance_count;
+    s->has_motion = s->has_deforming || s->camera.is_moving || s->instance_step_count > s->instance_count;
     s->camera.medium = s->camera_medium;
     s->camera.tan_half_fov = (float)tan((double)s->camera.fov_degrees * (3.14159265358979323846 / 360.0));
 }
@@ -445,6 +446,7 @@ ag_status scene_commit(scene *s, run_context *run, const char *isa)
     ag_status status = s->before ? share_surfaces(s) : AG_OK;
     for (uint32_t i = 0; i < s->shape_count && status == AG_OK; i++) {
         status = shape_commit(&s->shapes[i]);
+        s->has_deforming = s->has_deforming || shape_is_deforming(&s->shapes[i]);
         s->has_interfaces = s->has_interfaces || material_may_be_interface(s, s->shapes[i].material_index);
         s->has_panes = s->has_panes || pane_may_be_of(s, s->shapes[i].material_index);
     }

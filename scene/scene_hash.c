@@ -4,6 +4,7 @@
 
 #include "light/light_type.h"
 #include "scene.h"
+#include "shape/mesh_motion.h"
 
 #define ADD(value) HASH128_ADD(h, value)
 
@@ -97,10 +98,12 @@ static void add_material(hash128 *h, const material *m)
 
 static void add_mesh(hash128 *h, const mesh *m)
 {
-    add_array(h, m->positions, m->vertex_count, sizeof *m->positions);
-    add_array(h, m->normals, m->vertex_count, sizeof *m->normals);
+    add_array(h, m->positions, mesh_value_count(m), sizeof *m->positions);
+    add_array(h, m->normals, mesh_value_count(m), sizeof *m->normals);
     add_array(h, m->uvs, m->vertex_count, sizeof *m->uvs);
-    add_array(h, m->tangents, m->vertex_count, sizeof *m->tangents);
+    add_array(h, m->tangents, mesh_value_count(m), sizeof *m->tangents);
+    if (m->motion_segments > 0) /* maps of scenes without motion, that were kept before there was any, stay valid */
+        ADD(m->motion_segments);
     add_array(h, m->indices, (size_t)m->triangle_count * 3, sizeof *m->indices);
 }
 

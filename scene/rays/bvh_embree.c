@@ -9,6 +9,7 @@
 #include "cpu_count.h"
 #include "rays/geometry_embree.h"
 #include "shape/alpha.h"
+#include "shape/mesh_motion.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -316,7 +317,7 @@ static ag_status make_trees(bvh *b, const scene *s, run_context *run, unsigned j
 }
 
 /* Point queries do not find Embree's own spheres (seen with 3.13), and not all curves; in instances they would go by
- * other spaces. */
+ * other spaces, and of meshes whose vertices move they would tell of one time alone. */
 static void list_spheres(bvh *b, const scene *s)
 {
     b->tells_what_is_near = s->instance_count == 0;
@@ -325,7 +326,7 @@ static void list_spheres(bvh *b, const scene *s)
         if (embree_has_as_sphere(at) && b->sphere_count < BVH_SPHERES_MAX)
             b->spheres[b->sphere_count++] = i;
         else
-            b->tells_what_is_near = at->kind != SHAPE_CURVES && !embree_has_as_sphere(at);
+            b->tells_what_is_near = at->kind != SHAPE_CURVES && !embree_has_as_sphere(at) && !shape_is_deforming(at);
     }
 }
 

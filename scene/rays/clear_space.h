@@ -28,7 +28,8 @@ typedef struct clear_space {
     clear_space_plane plane[CLEAR_SPACE_PLANES];
 } clear_space;
 
-/* Returns whether anything is known at all: not of scenes with instances, curves or many spheres. */
+/* Returns whether anything is known at all: not of scenes with instances, curves, many spheres, or meshes
+ * whose vertices move. */
 bool clear_space_is_told(const scene *s);
 
 /* Finds the space at a point of a surface, on the side of its normal, which need not be exact, and no farther than

@@ -21,7 +21,7 @@ static void quadric_bounds(const struct RTCBoundsFunctionArguments *arguments)
 }
 
 /* The numbers of a ray or hit that comes as one of N side by side, in the order of RTCRay and RTCHit. */
-enum { RAY_ORIGIN = 0, RAY_NEAR = 3, RAY_DIRECTION = 4, RAY_FAR = 8, RAY_ID = 10 };
+enum { RAY_ORIGIN = 0, RAY_NEAR = 3, RAY_DIRECTION = 4, RAY_TIME = 7, RAY_FAR = 8, RAY_ID = 10 };
 enum { HIT_NORMAL = 0, HIT_U = 3, HIT_V = 4, HIT_PRIMITIVE = 5, HIT_GEOMETRY = 6, HIT_INSTANCE = 7 };
 
 typedef struct lane {
@@ -44,8 +44,9 @@ static bool quadric_hit(const void *user, void *ray, lane l, float *out_t)
     vec3 origin = lane_vec3(ray, l, RAY_ORIGIN), direction = lane_vec3(ray, l, RAY_DIRECTION);
     float from = *lane_float(ray, l, RAY_NEAR), to = *lane_float(ray, l, RAY_FAR);
     for (uint32_t crossing = 0; shape_intersect_quadric(a->shape, origin, direction, from, to, out_t); crossing++) {
-        if (shape_is_opaque(a->shape) || alpha_stops_ray(a->s, a->shape, 0, 0.0f, 0.0f, crossing, origin, direction,
-                                                         *out_t, (ray_alpha_rule)*lane_uint(ray, l, RAY_ID)))
+        if (shape_is_opaque(a->shape) ||
+            alpha_stops_ray(a->s, a->shape, 0, 0.0f, 0.0f, crossing, origin, direction, *lane_float(ray, l, RAY_TIME),
+                            *out_t, (ray_alpha_rule)*lane_uint(ray, l, RAY_ID)))
             return true;
         from = *out_t;
     }
@@ -101,8 +102,8 @@ static void filter_hit(const struct RTCFilterFunctionNArguments *arguments)
         uint32_t crossing = a->shape->kind == SHAPE_CURVES && a->shape->as.curves.type == CURVES_CYLINDER &&
                             vec3_dot(lane_vec3(hit, l, HIT_NORMAL), direction) > 0.0f;
         if (!alpha_stops_ray(a->s, a->shape, *lane_uint(hit, l, HIT_PRIMITIVE), *lane_float(hit, l, HIT_U),
-                             *lane_float(hit, l, HIT_V), crossing, origin, direction, *lane_float(ray, l, RAY_FAR),
-                             (ray_alpha_rule)*lane_uint(ray, l, RAY_ID)))
+                             *lane_float(hit, l, HIT_V), crossing, origin, direction, *lane_float(ray, l, RAY_TIME),
+                             *lane_float(ray, l, RAY_FAR), (ray_alpha_rule)*lane_uint(ray, l, RAY_ID)))
             arguments->valid[l.at] = 0;
     }
 }
@@ -145,8 +146,10 @@ bool embree_attach_shape(RTCDevice device, RTCScene into, embree_user *user, uin
         if (m->triangle_count == 0)
             return true;
         geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-        rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, m->positions, 0,
-                                   sizeof(vec3), m->vertex_count);
+        rtcSetGeometryTimeStepCount(geometry, m->motion_segments + 1);
+        for (unsigned k = 0; k <= m->motion_segments; k++)
+            rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, k, RTC_FORMAT_FLOAT3,
+                                       m->positions + (size_t)k * m->vertex_count, 0, sizeof(vec3), m->vertex_count);
         rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, m->indices, 0,
                                    3 * sizeof(uint32_t), m->triangle_count);
     } else if (s->kind == SHAPE_CURVES) {

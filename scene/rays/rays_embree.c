@@ -37,7 +37,7 @@ static void fill_instance_hit(const scene *s, const scene_ray *ray, const ray_me
     if (at->kind == SHAPE_CURVES)
         direction = instance_direction_in_object(&world_from_object, direction);
     shape_surface_at(at, met->primitive, met->u, met->v, instance_point_in_object(&world_from_object, world), direction,
-                     out_hit);
+                     ray->time, out_hit);
     instance_transform_hit(&world_from_object, out_hit);
 }
 
@@ -57,9 +57,9 @@ static void fill_hit(const scene *s, const scene_ray *ray, const ray_meeting *me
     vec3 position = vec3_add_scaled(ray->origin, ray->direction, met->distance);
     const shape *at = &s->shapes[met->geometry];
     if (ray->skips_uv && s->texture_count == 0)
-        shape_hit_at(at, met->primitive, met->u, met->v, position, ray->direction, out_hit);
+        shape_hit_at(at, met->primitive, met->u, met->v, position, ray->direction, ray->time, out_hit);
     else
-        shape_surface_at(at, met->primitive, met->u, met->v, position, ray->direction, out_hit);
+        shape_surface_at(at, met->primitive, met->u, met->v, position, ray->direction, ray->time, out_hit);
 }
 
 /* Embree accepts nothing beyond 1.8e18, and ends the process where it was built with asserts, as Debian's is.

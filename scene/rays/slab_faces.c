@@ -4,6 +4,7 @@
 
 #include "material/slab.h"
 #include "shape/flat_patches.h"
+#include "shape/mesh_motion.h"
 
 #include <stdlib.h>
 
@@ -126,8 +127,9 @@ double slab_faces_share(const scene *s, uint32_t material_index)
 
 static bool may_be_slab(const scene *s, const shape *item)
 {
-    return item->kind == SHAPE_MESH && item->as.mesh.triangle_count > 0 && item->light_index == SHAPE_NO_LIGHT &&
-           item->alpha == 1.0f && item->alpha_texture == SCENE_NO_TEXTURE && slab_may_be_of(s, item->material_index);
+    return item->kind == SHAPE_MESH && item->as.mesh.triangle_count > 0 && !shape_is_deforming(item) &&
+           item->light_index == SHAPE_NO_LIGHT && item->alpha == 1.0f && item->alpha_texture == SCENE_NO_TEXTURE &&
+           slab_may_be_of(s, item->material_index);
 }
 
 /* The hit of a trial on a patch, in one of its object's instances, or in the world itself. */
@@ -136,7 +138,7 @@ static void find_trial_hit(const scene *s, uint32_t shape_index, uint32_t instan
 {
     static const vec3 NOWHERE = {0.0f, 0.0f, 0.0f};
     shape_surface_at(&s->shapes[shape_index], p->largest_triangle, TRIAL_BARYCENTRICS[trial][0],
-                     TRIAL_BARYCENTRICS[trial][1], NOWHERE, NOWHERE, out_hit);
+                     TRIAL_BARYCENTRICS[trial][1], NOWHERE, NOWHERE, 0.0f, out_hit);
     out_hit->distance = out_hit->time = 0.0f;
     out_hit->shape_index = shape_index;
     out_hit->primitive_index = p->largest_triangle;

@@ -38,13 +38,13 @@ static float hash_of_ray(uint32_t shape_index, uint32_t primitive_index, uint32_
 }
 
 bool alpha_stops_ray(const scene *s, const shape *at, uint32_t primitive_index, float u, float v, uint32_t crossing,
-                     vec3 origin, vec3 direction, float t, ray_alpha_rule alpha_rule)
+                     vec3 origin, vec3 direction, float time, float t, ray_alpha_rule alpha_rule)
 {
     if (alpha_rule == RAY_MEETS_EMPTY_ALPHA)
         return true;
-    surface_hit hit = {.distance = t};
+    surface_hit hit = {.distance = t, .time = time};
     if (at->alpha_texture != SCENE_NO_TEXTURE)
-        shape_surface_at(at, primitive_index, u, v, vec3_add_scaled(origin, direction, t), direction, &hit);
+        shape_surface_at(at, primitive_index, u, v, vec3_add_scaled(origin, direction, t), direction, time, &hit);
     float alpha = alpha_at(s, at, &hit); /* which reads the hit for a texture only */
     if (alpha <= 0.0f || alpha >= 1.0f || alpha_rule == RAY_MEETS_ALPHA)
         return alpha > 0.0f;

@@ -29,8 +29,9 @@ float alpha_at(const scene *s, const shape *at, const surface_hit *hit);
 float alpha_at_hit(const scene *s, const surface_hit *hit);
 
 /* Returns whether a ray meets the surface where it crosses it at distance t. u, v: as in shape_surface_at; crossing:
- * its number, where the ray crosses one primitive several times. The result is the same for the same ray. */
+ * its number, where the ray crosses one primitive several times; time: of the shutter. The result is the same for the
+ * same ray. */
 bool alpha_stops_ray(const scene *s, const shape *at, uint32_t primitive_index, float u, float v, uint32_t crossing,
-                     vec3 origin, vec3 direction, float t, ray_alpha_rule alpha_rule);
+                     vec3 origin, vec3 direction, float time, float t, ray_alpha_rule alpha_rule);
 
 #endif

@@ -3,6 +3,7 @@
 #include "shape/borrowed_arrays.h"
 
 #include "math/rng.h"
+#include "shape/mesh_motion.h"
 
 #include <errno.h>
 #include <stdint.h>
@@ -24,7 +25,7 @@ static int borrowed_of(const shape *s, array out[ARRAYS_MOST])
     if (s->kind != SHAPE_MESH)
         return 0;
     if (m->borrowed & MESH_BORROWS_POSITIONS)
-        out[count++] = (array){(const unsigned char *)m->positions, m->vertex_count * sizeof *m->positions};
+        out[count++] = (array){(const unsigned char *)m->positions, mesh_value_count(m) * sizeof *m->positions};
     if (m->borrowed & MESH_BORROWS_UVS)
         out[count++] = (array){(const unsigned char *)m->uvs, m->vertex_count * sizeof *m->uvs};
     if (m->borrowed & MESH_BORROWS_INDICES)

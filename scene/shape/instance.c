@@ -4,6 +4,7 @@
 #include "shape/instance.h"
 
 #include "scene.h"
+#include "shape/mesh_motion.h"
 
 /* The error of the traversal's way into the object's space and back, as a part of all that is added up there. */
 #define FLAT_EPSILON_RELATIVE  0x1p-19f
@@ -114,16 +115,28 @@ surface_hit instance_hit_in_object(const scene *s, const surface_hit *hit)
     return h;
 }
 
+static const affine IDENTITY = {{{1.0f, 0.0f, 0.0f, 0.0f}, {0.0f, 1.0f, 0.0f, 0.0f}, {0.0f, 0.0f, 1.0f, 0.0f}}};
+
 surface_rest surface_at_opening(const scene *s, const surface_hit *hit)
 {
     surface_rest rest = {hit->position, hit->geometric_normal, 1.0f};
-    if (hit->instance_index == SCENE_NO_INSTANCE || s->instances[hit->instance_index].step_count == 1)
+    if (!s->has_motion)
         return rest;
-    affine now = instance_at(s, hit->instance_index, hit->time), opening = instance_at(s, hit->instance_index, 0.0f);
-    const double world[3] = {(double)hit->position.x, (double)hit->position.y, (double)hit->position.z};
-    rest.position = affine_point(&opening, instance_point_in_object(&now, world));
+    const shape *at = &s->shapes[hit->shape_index];
+    const bool is_placed = hit->instance_index != SCENE_NO_INSTANCE;
+    const bool is_moving = is_placed && s->instances[hit->instance_index].step_count > 1;
+    if (!is_moving && !shape_is_deforming(at))
+        return rest;
 
-    /* the normal goes back into the object as it came, and out again; areas go by the cofactors' lengths */
+    /* the normal, as an area of 1, goes back into the object as it came, there with the surface, and out again by the
+     * cofactors */
+    affine now = IDENTITY, opening = IDENTITY;
+    if (is_placed) {
+        now = instance_at(s, hit->instance_index, hit->time);
+        opening = instance_at(s, hit->instance_index, 0.0f);
+    }
+    const double world[3] = {(double)hit->position.x, (double)hit->position.y, (double)hit->position.z};
+    vec3 position = is_placed ? instance_point_in_object(&now, world) : hit->position;
     double c[3][3], determinant = affine_determinant(&now);
     vec3 n = hit->geometric_normal;
     const double normal[3] = {(double)n.x, (double)n.y, (double)n.z};
@@ -133,13 +146,18 @@ surface_rest surface_at_opening(const scene *s, const surface_hit *hit)
         for (int j = 0; j < 3; j++)
             object[i] += (double)now.m[j][i] * normal[j] / determinant;
     }
+    if (shape_is_deforming(at))
+        mesh_move_to_opening(&at->as.mesh, hit->primitive_index, hit->time, &position, object);
     affine_cofactors(&opening, c);
     for (int i = 0; i < 3; i++) {
         placed[i] = c[i][0] * object[0] + c[i][1] * object[1] + c[i][2] * object[2];
         before += normal[i] * normal[i];
         after += placed[i] * placed[i];
     }
+    rest.position = is_placed ? affine_point(&opening, position) : position;
     rest.area_ratio = (float)sqrt(after / before);
+    if (!(after > 0.0))
+        return rest; /* no area: any normal will do */
     double inverse = 1.0 / sqrt(after);
     rest.geometric_normal =
         (vec3){(float)(placed[0] * inverse), (float)(placed[1] * inverse), (float)(placed[2] * inverse)};

@@ -45,7 +45,8 @@ void instance_transform_hit(const affine *world_from_object, struct surface_hit 
 struct surface_hit instance_hit_in_object(const struct scene *s, const struct surface_hit *hit);
 
 /* A point of the surface at the opening of the shutter, and the ratio of its area there to its area now (1 without
- * scaling). The hit's own position where nothing moves. */
+ * scaling, or bending; 0 where it has no area there, and the hit's own normal). The hit's own position where nothing
+ * moves. */
 typedef struct surface_rest {
     vec3 position;
     vec3 geometric_normal; /* unit, outside */

@@ -3,6 +3,7 @@
  * Threads: shape_commit by one thread; the rest read only. */
 #include "math/sampling.h"
 #include "shape/curves.h"
+#include "shape/mesh_motion.h"
 #include "shape/quadric.h"
 #include "texture/texture.h"
 
@@ -70,22 +71,23 @@ ag_status shape_copy(const shape *s, const transform *map, shape *out_copy)
     mesh *m = &copy.as.mesh;
     m->positions = NULL, m->normals = NULL, m->uvs = NULL, m->tangents = NULL, m->indices = NULL, m->area_cdf = NULL;
     m->holder_count = NULL, m->borrowed = 0;
-    if (!copy_array(from->positions, from->vertex_count, 1, sizeof *m->positions, &m->positions) ||
-        !copy_array(from->normals, from->vertex_count, 0, sizeof *m->normals, &m->normals) ||
+    const size_t count = mesh_value_count(from);
+    if (!copy_array(from->positions, count, 1, sizeof *m->positions, &m->positions) ||
+        !copy_array(from->normals, count, 0, sizeof *m->normals, &m->normals) ||
         !copy_array(from->uvs, from->vertex_count, 0, sizeof *m->uvs, &m->uvs) ||
-        !copy_array(from->tangents, from->vertex_count, 0, sizeof *m->tangents, &m->tangents) ||
+        !copy_array(from->tangents, count, 0, sizeof *m->tangents, &m->tangents) ||
         !copy_array(from->indices, 3 * (size_t)from->triangle_count, 0, sizeof *m->indices, &m->indices)) {
         shape_reset(&copy);
         return AG_ERROR_MEMORY;
     }
-    for (uint32_t i = 0; i < m->vertex_count; i++)
+    for (size_t i = 0; i < count; i++)
         m->positions[i] = transform_point(map, m->positions[i]);
-    for (uint32_t i = 0; m->normals && i < m->vertex_count; i++) {
+    for (size_t i = 0; m->normals && i < count; i++) {
         vec3 n = transform_normal(map, m->normals[i]);
         float largest = vec3_max_abs(n);
         m->normals[i] = largest > 0.0f ? vec3_normalize(vec3_scale(n, 1.0f / largest)) : n;
     }
-    for (uint32_t i = 0; m->tangents && i < m->vertex_count; i++)
+    for (size_t i = 0; m->tangents && i < count; i++)
         m->tangents[i] = transform_vector(map, m->tangents[i]);
     copy.flip_normal = s->flip_normal != transform_swaps_handedness(map);
     *out_copy = copy;
@@ -130,7 +132,7 @@ void shape_bounds(const shape *s, vec3 *out_min, vec3 *out_max)
         return;
     }
     vec3 low = {INFINITY, INFINITY, INFINITY}, high = {-INFINITY, -INFINITY, -INFINITY};
-    for (uint32_t i = 0; i < s->as.mesh.vertex_count; i++) {
+    for (size_t i = 0; i < mesh_value_count(&s->as.mesh); i++) {
         low = vec3_min(low, s->as.mesh.positions[i]);
         high = vec3_max(high, s->as.mesh.positions[i]);
     }
@@ -198,7 +200,7 @@ static surface_sample mesh_sample_area(const shape *s, vec2 u)
         u.x = float_below_one(fmaxf((u.x - before) / share, 0.0f));
     vec2 b = sample_triangle(u);
     surface_hit hit;
-    shape_surface_at(s, low, b.x, b.y, NOWHERE, NOWHERE, &hit);
+    shape_surface_at(s, low, b.x, b.y, NOWHERE, NOWHERE, 0.0f, &hit);
     return (surface_sample){hit.position, hit.geometric_normal, 1.0f / s->area, hit.epsilon, low, b};
 }
 
@@ -227,7 +229,7 @@ surface_sample shape_sample_area(const shape *s, vec2 u)
 void shape_sample_surface(const shape *s, uint32_t shape_index, const surface_sample *sample, surface_hit *out_hit)
 {
     shape_surface_at(s, sample->primitive_index, sample->barycentrics.x, sample->barycentrics.y, sample->position,
-                     NOWHERE, out_hit);
+                     NOWHERE, 0.0f, out_hit);
     out_hit->distance = 0.0f;
     out_hit->slab.thickness = 0.0f;
     out_hit->shape_index = shape_index;
@@ -248,26 +250,25 @@ static corners mesh_corners(const mesh *m, uint32_t triangle)
     return (corners){mesh_vertex(m, triangle, 0), mesh_vertex(m, triangle, 1), mesh_vertex(m, triangle, 2)};
 }
 
-/* The geometric normal, and the shading normal (the same where the mesh has none). */
-static vec3 mesh_normals(const shape *s, uint32_t primitive_index, const corners *c, float u, float v,
-                         vec3 *out_shading)
+/* The geometric normal, and the shading normal (the same where the mesh has none). normals: among them those of the
+ * corners, at index; NULL: the mesh has none. */
+static inline vec3 mesh_normals(const shape *s, const corners *c, const vec3 *normals, const uint32_t index[3], float u,
+                                float v, vec3 *out_shading)
 {
-    const mesh *m = &s->as.mesh;
-    const uint32_t *index = m->indices + 3 * (size_t)primitive_index;
     double length;
-    vec3 n = area_vector(c->p0, c->p1, c->p2, &length);
+    vec3 geometric = area_vector(c->p0, c->p1, c->p2, &length);
     if (s->flip_normal)
-        n = vec3_negate(n);
-    *out_shading = n;
-    if (!m->normals)
-        return n;
-    vec3 ns = vec3_add_scaled(vec3_add_scaled(vec3_scale(m->normals[index[0]], 1.0f - u - v), m->normals[index[1]], u),
-                              m->normals[index[2]], v);
+        geometric = vec3_negate(geometric);
+    *out_shading = geometric;
+    if (!normals)
+        return geometric;
+    vec3 ns = vec3_add_scaled(vec3_add_scaled(vec3_scale(normals[index[0]], 1.0f - u - v), normals[index[1]], u),
+                              normals[index[2]], v);
     float square = vec3_length_squared(ns);
     if (!(square > 0.0f))
-        return n;
+        return geometric;
     *out_shading = vec3_scale(ns, 1.0f / sqrtf(square));
-    return vec3_face_forward(n, *out_shading); /* as pbrt: the given normals say where outside is */
+    return vec3_face_forward(geometric, *out_shading); /* as pbrt: the given normals say where outside is */
 }
 
 static vec3 position_between(const corners *c, float u, float v)
@@ -281,17 +282,38 @@ static float corners_epsilon(const corners *c)
            SHAPE_EPSILON_RELATIVE;
 }
 
-static void mesh_surface_at(const shape *s, uint32_t primitive_index, float u, float v, surface_hit *h)
+/* Position, normals and epsilon where the vertices move. Not inlined: such meshes are rare, and this function is hot.
+ */
+static __attribute__((noinline)) void moving_mesh_surface_at(const shape *s, uint32_t primitive_index, float u, float v,
+                                                             float time, surface_hit *h)
+{
+    const mesh *m = &s->as.mesh;
+    static const uint32_t OWN[3] = {0, 1, 2};
+    const corner_values p = mesh_moving_values(m, m->positions, primitive_index, time);
+    const corners c = {p.at[0], p.at[1], p.at[2]};
+    corner_values n = {{NOWHERE, NOWHERE, NOWHERE}};
+    if (m->normals)
+        n = mesh_moving_normals(m, primitive_index, time);
+    h->position = position_between(&c, u, v);
+    h->epsilon = mesh_moving_reach(m, primitive_index, time) * SHAPE_EPSILON_RELATIVE;
+    h->geometric_normal = mesh_normals(s, &c, m->normals ? n.at : NULL, OWN, u, v, &h->shading_normal);
+}
+
+static void mesh_surface_at(const shape *s, uint32_t primitive_index, float u, float v, float time, surface_hit *h)
 {
     h->uv = (vec2){u + v, v}; /* as pbrt: (0, 0), (1, 0), (1, 1) */
     const mesh *m = &s->as.mesh;
-    corners c = mesh_corners(m, primitive_index);
-    h->position = position_between(&c, u, v);
-    h->epsilon = corners_epsilon(&c);
-    h->geometric_normal = mesh_normals(s, primitive_index, &c, u, v, &h->shading_normal);
+    const uint32_t *index = m->indices + 3 * (size_t)primitive_index;
+    if (m->motion_segments > 0) {
+        moving_mesh_surface_at(s, primitive_index, u, v, time, h);
+    } else {
+        corners c = mesh_corners(m, primitive_index);
+        h->position = position_between(&c, u, v);
+        h->epsilon = corners_epsilon(&c);
+        h->geometric_normal = mesh_normals(s, &c, m->normals, index, u, v, &h->shading_normal);
+    }
     if (m->uvs) {
         const vec2 *t = m->uvs;
-        const uint32_t *index = m->indices + 3 * (size_t)primitive_index;
         float w = 1.0f - u - v;
         h->uv.x = t[index[0]].x * w + t[index[1]].x * u + t[index[2]].x * v;
         h->uv.y = t[index[0]].y * w + t[index[1]].y * u + t[index[2]].y * v;
@@ -302,7 +324,7 @@ static void mesh_surface_at(const shape *s, uint32_t primitive_index, float u, f
 bool shape_bare_point_at(const shape *s, uint32_t primitive_index, float u, float v, vec3 position,
                          surface_point *out_point)
 {
-    if (s->kind == SHAPE_MESH) {
+    if (s->kind == SHAPE_MESH && s->as.mesh.motion_segments == 0) {
         double length;
         corners c = mesh_corners(&s->as.mesh, primitive_index);
         out_point->position = position_between(&c, u, v);
@@ -310,18 +332,18 @@ bool shape_bare_point_at(const shape *s, uint32_t primitive_index, float u, floa
         out_point->epsilon = corners_epsilon(&c);
         return true;
     }
-    if (s->kind == SHAPE_CURVES)
+    if (s->kind == SHAPE_CURVES || s->kind == SHAPE_MESH)
         return false;
     out_point->epsilon = s->as.quadric.epsilon;
     return quadric_bare_point_at(s, position, &out_point->position, &out_point->normal);
 }
 
 static void surface_at(const shape *s, uint32_t primitive_index, float u, float v, vec3 position, vec3 direction,
-                       bool with_uv, surface_hit *out_hit)
+                       float time, bool with_uv, surface_hit *out_hit)
 {
     out_hit->is_strand = out_hit->faces_rays = out_hit->is_mirrored = false;
     if (s->kind == SHAPE_MESH)
-        mesh_surface_at(s, primitive_index, u, v, out_hit);
+        mesh_surface_at(s, primitive_index, u, v, time, out_hit);
     else if (s->kind == SHAPE_CURVES)
         curves_surface_at(s, primitive_index, u, position, direction, out_hit);
     else
@@ -332,13 +354,13 @@ static void surface_at(const shape *s, uint32_t primitive_index, float u, float 
 }
 
 void shape_surface_at(const shape *s, uint32_t primitive_index, float u, float v, vec3 position, vec3 direction,
-                      surface_hit *out_hit)
+                      float time, surface_hit *out_hit)
 {
-    surface_at(s, primitive_index, u, v, position, direction, true, out_hit);
+    surface_at(s, primitive_index, u, v, position, direction, time, true, out_hit);
 }
 
-void shape_hit_at(const shape *s, uint32_t primitive_index, float u, float v, vec3 position, vec3 direction,
+void shape_hit_at(const shape *s, uint32_t primitive_index, float u, float v, vec3 position, vec3 direction, float time,
                   surface_hit *out_hit)
 {
-    surface_at(s, primitive_index, u, v, position, direction, false, out_hit);
+    surface_at(s, primitive_index, u, v, position, direction, time, false, out_hit);
 }

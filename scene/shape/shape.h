@@ -29,6 +29,9 @@ enum { MESH_BORROWS_POSITIONS = 1, MESH_BORROWS_UVS = 2, MESH_BORROWS_INDICES = 
  * last one. */
 typedef struct mesh {
     uint32_t vertex_count, triangle_count;
+    /* Above 0 the vertices move: positions, normals and tangents hold this many more sets of vertex_count, for evenly
+     * spaced times from the shutter's opening to its closing, straight in between (mesh_motion.h). */
+    uint32_t motion_segments;
     vec3 *positions;
     vec3 *normals;          /* unit shading normals, or NULL */
     vec2 *uvs;              /* or NULL */
@@ -131,19 +134,21 @@ float shape_pdf_area(const shape *s, vec3 geometric_normal);
 
 /* The hit that Embree has found, for rays_embree.c: fills in everything but distance, indices and time. u, v:
  * Embree's barycentrics for meshes, u along curves; for all but meshes `position` comes in as the ray's point and is
- * put onto the surface. direction: the ray's, of any length; read for curves alone. */
+ * put onto the surface. direction: the ray's, of any length; read for curves alone. time: of the shutter, [0, 1]. */
 void shape_surface_at(const shape *s, uint32_t primitive_index, float u, float v, vec3 position, vec3 direction,
-                      surface_hit *out_hit);
+                      float time, surface_hit *out_hit);
 /* shape_surface_at, but uv may be missing. */
-void shape_hit_at(const shape *s, uint32_t primitive_index, float u, float v, vec3 position, vec3 direction,
+void shape_hit_at(const shape *s, uint32_t primitive_index, float u, float v, vec3 position, vec3 direction, float time,
                   surface_hit *out_hit);
 /* Position, geometric normal and epsilon alone, as the same have them, but for the normal's side; false: not of this
- * kind of shape. */
+ * kind of shape, nor where its vertices move. */
 bool shape_bare_point_at(const shape *s, uint32_t primitive_index, float u, float v, vec3 position,
                          surface_point *out_point);
 
-/* Area of a shape in world space, m^2. For a power given in the file (pbrt's "power"). */
+/* Area of a shape in world space, m^2, at the opening of the shutter. For a power given in the file (pbrt's "power").
+ */
 float shape_area(const shape *s);
+/* For the whole shutter. */
 void shape_bounds(const shape *s, vec3 *out_min, vec3 *out_max);
 /* Fills in what scene_commit sets: centers, areas; area_cdf when it shines. Errors: AG_ERROR_MEMORY. */
 ag_status shape_commit(shape *s);

@@ -4,6 +4,7 @@
 
 #include "math/rng.h"
 #include "shape/borrowed_arrays.h"
+#include "shape/mesh_motion.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -45,7 +46,8 @@ bool shape_has_same_surface(const shape *a, const shape *b)
     if (a->kind != b->kind)
         return false;
     if (a->kind == SHAPE_MESH)
-        return a->as.mesh.holder_count && a->as.mesh.holder_count == b->as.mesh.holder_count;
+        return a->as.mesh.holder_count && a->as.mesh.holder_count == b->as.mesh.holder_count &&
+               a->as.mesh.motion_segments == b->as.mesh.motion_segments; /* of a lamp that stands still: 0 */
     if (a->kind == SHAPE_CURVES)
         return a->as.curves.holder_count && a->as.curves.holder_count == b->as.curves.holder_count;
     return is_same_quadric(&a->as.quadric, &b->as.quadric);
@@ -58,11 +60,12 @@ static bool is_same_array(const void *a, const void *b, size_t size_bytes)
 
 static bool is_same_mesh(const mesh *a, const mesh *b)
 {
-    const size_t count = a->vertex_count, corners = 3 * (size_t)a->triangle_count;
-    return a->vertex_count == b->vertex_count && a->triangle_count == b->triangle_count && a->borrowed == 0 &&
-           b->borrowed == 0 && is_same_array(a->positions, b->positions, count * sizeof *a->positions) &&
+    const size_t count = mesh_value_count(a), corners = 3 * (size_t)a->triangle_count;
+    return a->vertex_count == b->vertex_count && a->motion_segments == b->motion_segments &&
+           a->triangle_count == b->triangle_count && a->borrowed == 0 && b->borrowed == 0 &&
+           is_same_array(a->positions, b->positions, count * sizeof *a->positions) &&
            is_same_array(a->normals, b->normals, count * sizeof *a->normals) &&
-           is_same_array(a->uvs, b->uvs, count * sizeof *a->uvs) &&
+           is_same_array(a->uvs, b->uvs, a->vertex_count * sizeof *a->uvs) &&
            is_same_array(a->tangents, b->tangents, count * sizeof *a->tangents) &&
            is_same_array(a->indices, b->indices, corners * sizeof *a->indices);
 }
@@ -118,7 +121,7 @@ uint64_t shape_hash_borrowed(const shape *s)
     if (s->kind != SHAPE_MESH || m->borrowed == 0 || !borrowed_arrays_are_mapped(s))
         return 0;
     if (m->borrowed & MESH_BORROWS_POSITIONS)
-        hash = hash_words(hash, m->positions, 3 * (size_t)m->vertex_count);
+        hash = hash_words(hash, m->positions, 3 * mesh_value_count(m));
     if (m->borrowed & MESH_BORROWS_UVS)
         hash = hash_words(hash, m->uvs, 2 * (size_t)m->vertex_count);
     if (m->borrowed & MESH_BORROWS_INDICES)

@@ -4,30 +4,17 @@
 #include "math/sampling.h"
 #include "scene.h"
 #include "shape/curves.h"
+#include "shape/mesh_motion.h"
 #include "shape/quadric.h"
 
 static const surface_differentials NO_DIFFERENTIALS;
 
 static vec3 across(vec3 v, vec3 normal) { return vec3_add_scaled(v, normal, -vec3_dot(v, normal)); }
 
-static vec3 triangle_edge(const vec3 *values, const uint32_t *index, int corner)
-{
-    return vec3_sub(values[index[corner]], values[index[0]]);
-}
-
 /* From derivatives along two edges to those along u and v, in double: an atlas makes its uvs small. */
 static vec3 combine(vec3 e1, double a, vec3 e2, double b)
 {
     return (vec3){(float)(e1.x * a + e2.x * b), (float)(e1.y * a + e2.y * b), (float)(e1.z * a + e2.z * b)};
-}
-
-/* Barycentrics of corners 1 and 2 of a point in the triangle's plane. */
-static void find_barycentrics(vec3 e1, vec3 e2, vec3 from_p0, double *out_b1, double *out_b2)
-{
-    double a11 = vec3_dot(e1, e1), a12 = vec3_dot(e1, e2), a22 = vec3_dot(e2, e2);
-    double c1 = vec3_dot(from_p0, e1), c2 = vec3_dot(from_p0, e2), determinant = a11 * a22 - a12 * a12;
-    *out_b1 = determinant > 0.0 ? (c1 * a22 - c2 * a12) / determinant : 0.0;
-    *out_b2 = determinant > 0.0 ? (c2 * a11 - c1 * a12) / determinant : 0.0;
 }
 
 /* How uvs change along a triangle's edges from its first corner. */
@@ -48,11 +35,11 @@ static uv_edges triangle_uv_edges(const mesh *m, const uint32_t *index)
     return e;
 }
 
-/* dpdu and dpdv; all zero where uvs say nothing. */
-static surface_differentials triangle_axes(const mesh *m, uint32_t triangle)
+/* dpdu and dpdv; all zero where uvs say nothing. positions: of the triangle's corners. */
+static surface_differentials triangle_axes(const mesh *m, uint32_t triangle, const corner_values *positions)
 {
     const uint32_t *index = m->indices + 3 * (size_t)triangle;
-    vec3 e1 = triangle_edge(m->positions, index, 1), e2 = triangle_edge(m->positions, index, 2);
+    vec3 e1 = triangle_edge(positions, 1), e2 = triangle_edge(positions, 2);
     uv_edges uv = triangle_uv_edges(m, index);
     surface_differentials d = NO_DIFFERENTIALS;
     if (uv.inverse == 0.0)
@@ -66,16 +53,16 @@ static surface_differentials mesh_differentials(const shape *s, const surface_hi
 {
     const mesh *m = &s->as.mesh;
     const uint32_t *index = m->indices + 3 * (size_t)hit->primitive_index;
-    surface_differentials d = triangle_axes(m, hit->primitive_index);
+    const corner_values p = mesh_values_at(m, m->positions, hit->primitive_index, hit->time);
+    surface_differentials d = triangle_axes(m, hit->primitive_index, &p);
     uv_edges uv = triangle_uv_edges(m, index);
     if (uv.inverse == 0.0 || !m->normals)
         return d;
-    vec3 e1 = triangle_edge(m->positions, index, 1), e2 = triangle_edge(m->positions, index, 2);
-    vec3 n0 = m->normals[index[0]];
-    vec3 n1 = triangle_edge(m->normals, index, 1), n2 = triangle_edge(m->normals, index, 2);
+    const corner_values n = mesh_normals_at(m, hit->primitive_index, hit->time);
+    vec3 n1 = triangle_edge(&n, 1), n2 = triangle_edge(&n, 2);
     double b1, b2;
-    find_barycentrics(e1, e2, vec3_sub(hit->position, m->positions[index[0]]), &b1, &b2);
-    double length = (double)vec3_length(vec3_add(n0, combine(n1, b1, n2, b2)));
+    find_barycentrics(&p, hit->position, &b1, &b2);
+    double length = (double)vec3_length(vec3_add(n.at[0], combine(n1, b1, n2, b2)));
     if (length > 0.0) {
         double inverse = uv.inverse / length;
         d.dndu = across(combine(n1, uv.v2 * inverse, n2, -uv.v1 * inverse), hit->shading_normal);
@@ -183,8 +170,14 @@ bool surface_uv_axes(const scene *s, const surface_hit *hit, vec3 *out_dpdu, vec
     const bool is_placed = hit->instance_index != SCENE_NO_INSTANCE;
     /* a triangle's are the same all over it */
     surface_hit in_object = is_placed && at->kind != SHAPE_MESH ? instance_hit_in_object(s, hit) : *hit;
-    surface_differentials d =
-        at->kind == SHAPE_MESH ? triangle_axes(&at->as.mesh, hit->primitive_index) : differentials_of(at, &in_object);
+    surface_differentials d;
+    if (at->kind == SHAPE_MESH) {
+        const mesh *m = &at->as.mesh;
+        const corner_values p = mesh_values_at(m, m->positions, hit->primitive_index, hit->time);
+        d = triangle_axes(m, hit->primitive_index, &p);
+    } else {
+        d = differentials_of(at, &in_object);
+    }
     if (is_placed) {
         affine world_from_object = instance_at(s, hit->instance_index, hit->time);
         d.dpdu = affine_vector(&world_from_object, d.dpdu);
@@ -202,12 +195,11 @@ static bool mesh_tangent(const shape *s, const surface_hit *hit, vec3 *out_tange
     const mesh *m = &s->as.mesh;
     if (s->kind != SHAPE_MESH || !m->tangents)
         return false;
-    const uint32_t *index = m->indices + 3 * (size_t)hit->primitive_index;
+    const corner_values p = mesh_values_at(m, m->positions, hit->primitive_index, hit->time);
+    const corner_values along = mesh_values_at(m, m->tangents, hit->primitive_index, hit->time);
     double b1, b2;
-    find_barycentrics(triangle_edge(m->positions, index, 1), triangle_edge(m->positions, index, 2),
-                      vec3_sub(hit->position, m->positions[index[0]]), &b1, &b2);
-    vec3 t = vec3_add(m->tangents[index[0]],
-                      combine(triangle_edge(m->tangents, index, 1), b1, triangle_edge(m->tangents, index, 2), b2));
+    find_barycentrics(&p, hit->position, &b1, &b2);
+    vec3 t = vec3_add(along.at[0], combine(triangle_edge(&along, 1), b1, triangle_edge(&along, 2), b2));
     *out_tangent = t;
     return vec3_length_squared(vec3_cross(hit->shading_normal, t)) > 0.0f;
 }

@@ -56,11 +56,11 @@ static vec3 lamp_normal(const scene *s, const light_emission *e)
     const shape *lamp = &s->shapes[0];
     if (lamp->kind == SHAPE_SPHERE) {
         surface_hit hit;
-        shape_surface_at(lamp, 0, 0.0f, 0.0f, e->origin, e->direction, &hit);
+        shape_surface_at(lamp, 0, 0.0f, 0.0f, e->origin, e->direction, 0.0f, &hit);
         return hit.geometric_normal;
     }
     surface_hit hit; /* flat lamps */
-    shape_surface_at(lamp, 0, 0.3f, 0.3f, e->origin, e->direction, &hit);
+    shape_surface_at(lamp, 0, 0.3f, 0.3f, e->origin, e->direction, 0.0f, &hit);
     return hit.geometric_normal;
 }
 

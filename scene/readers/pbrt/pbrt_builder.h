@@ -50,9 +50,9 @@ ag_status pbrt_builder_shape(pbrt_builder *b, const pbrt_call *call, const pbrt_
  * are finite. Behind positions 4 more bytes can be read. Normals and tangents are parameters. */
 typedef struct pbrt_borrowed {
     const float *positions; /* [3 * vertex_count] */
-    const float *uvs;       /* [uv_count], or NULL; ignored with a warning where that is not 2 * vertex_count */
+    const float *uvs;       /* [uv_count], or NULL; ignored with a warning where that is not as "motionsteps" says */
     const int32_t *indices; /* [index_count] */
-    size_t vertex_count, uv_count, index_count;
+    size_t vertex_count, uv_count, index_count; /* vertices: of all motion steps */
 } pbrt_borrowed;
 
 /* Whether shapes of that type are meshes, whose arrays can be read once and serve in several scenes. */

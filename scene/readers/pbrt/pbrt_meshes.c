@@ -4,6 +4,8 @@
  * Flow: pbrt_shapes, pbrt_patches, pbrt_ply, pbrt_subdivision -> [here] -> scene.shapes. Threads: one per scene. */
 #include "pbrt/pbrt_meshes.h"
 
+#include "shape/mesh_motion.h"
+
 #include <stdlib.h>
 #include <string.h>
 
@@ -43,31 +45,33 @@ static vec3 float_direction(const double *n)
 
 static bool allocate_arrays(const pbrt_mesh *source, mesh *m)
 {
-    m->positions = calloc(source->vertex_count + 1, sizeof *m->positions); /* room for Embree's 16 byte reads */
+    const size_t count = mesh_value_count(m);
+    m->positions = calloc(count + 1, sizeof *m->positions); /* room for Embree's 16 byte reads */
     if (source->normals)
-        m->normals = malloc(source->vertex_count * sizeof *m->normals);
+        m->normals = malloc(count * sizeof *m->normals);
     if (source->uvs)
         m->uvs = malloc(source->vertex_count * sizeof *m->uvs);
     if (source->tangents)
-        m->tangents = malloc(source->vertex_count * sizeof *m->tangents);
+        m->tangents = malloc(count * sizeof *m->tangents);
     return m->positions && (!source->normals || m->normals) && (!source->uvs || m->uvs) &&
            (!source->tangents || m->tangents);
 }
 
 static void copy_vertices(const pbrt_mesh *source, mesh *m)
 {
-    for (size_t i = 0; i < source->vertex_count; i++) {
+    const size_t count = mesh_value_count(m);
+    for (size_t i = 0; i < count; i++) {
         const double *p = source->positions + 3 * i;
         m->positions[i] = (vec3){(float)p[0], (float)p[1], (float)p[2]};
     }
     if (m->normals)
-        for (size_t i = 0; i < source->vertex_count; i++)
+        for (size_t i = 0; i < count; i++)
             m->normals[i] = float_direction(source->normals + 3 * i);
     if (m->uvs)
         for (size_t i = 0; i < source->vertex_count; i++)
             m->uvs[i] = (vec2){(float)source->uvs[2 * i], (float)source->uvs[2 * i + 1]};
     if (m->tangents)
-        for (size_t i = 0; i < source->vertex_count; i++)
+        for (size_t i = 0; i < count; i++)
             m->tangents[i] = float_direction(source->tangents + 3 * i);
 }
 
@@ -75,7 +79,8 @@ static void copy_vertices(const pbrt_mesh *source, mesh *m)
 static bool transform_vertices(const pbrt_state *state, mesh *m)
 {
     const transform *t = &state->world_from_object;
-    for (uint32_t i = 0; i < m->vertex_count; i++) {
+    const size_t count = mesh_value_count(m);
+    for (size_t i = 0; i < count; i++) {
         vec3 world = transform_point(t, m->positions[i]);
         if (!(vec3_max_abs(world) <= PBRT_MAX_COORDINATE) || !vec3_is_finite(world))
             return false;
@@ -83,24 +88,37 @@ static bool transform_vertices(const pbrt_state *state, mesh *m)
             m->positions[i] = world;
     }
     if (m->normals)
-        for (uint32_t i = 0; i < m->vertex_count; i++)
+        for (size_t i = 0; i < count; i++)
             m->normals[i] = world_normal(t, state->reverse_orientation, m->normals[i]);
     if (m->tangents)
-        for (uint32_t i = 0; i < m->vertex_count; i++) {
+        for (size_t i = 0; i < count; i++) {
             vec3 along = transform_vector(t, m->tangents[i]);
             m->tangents[i] = vec3_is_finite(along) ? along : (vec3){0.0f, 0.0f, 0.0f};
         }
     return true;
 }
 
-/* Moves the triangles that have an area together; returns how many they are. */
-static size_t drop_degenerate(const vec3 *positions, uint32_t *indices, size_t triangle_count)
+/* Whether a triangle has an area in any of the sets. */
+static bool has_area_ever(const mesh *m, const uint32_t *corners)
 {
+    bool has_any = false;
+    for (size_t k = 0; k <= m->motion_segments && !has_any; k++)
+        has_any = has_area(m->positions + k * m->vertex_count, corners);
+    return has_any;
+}
+
+/* Moves the triangles that have an area together; returns how many they are. out_late: how many of them have none at
+ * the opening of the shutter. */
+static size_t drop_degenerate(const mesh *m, size_t *out_late)
+{
+    uint32_t *indices = m->indices;
     size_t kept = 0;
-    for (size_t i = 0; i < triangle_count; i++)
-        if (has_area(positions, indices + 3 * i)) {
+    *out_late = 0;
+    for (size_t i = 0; i < m->triangle_count; i++)
+        if (has_area_ever(m, indices + 3 * i)) {
             if (kept < i) /* borrowed indices are not written to */
                 memmove(indices + 3 * kept, indices + 3 * i, 3 * sizeof *indices);
+            *out_late += m->motion_segments > 0 && !has_area(m->positions, indices + 3 * i);
             kept++;
         }
     return kept;
@@ -118,7 +136,7 @@ ag_status pbrt_add_object_mesh(pbrt_parser *parser, const parameter_list *list, 
         mesh_reset(m);
         return pbrt_refuse(parser, list, "P", "a vertex lies beyond 1e18 units in world space");
     }
-    size_t count = m->triangle_count + dropped, kept = drop_degenerate(m->positions, m->indices, m->triangle_count);
+    size_t count = m->triangle_count + dropped, late, kept = drop_degenerate(m, &late);
     if (kept == 0 && count > 0 && !expects_degenerate)
         log_at(parser->log, AG_LOG_WARNING, list->where,
                "Shape \"%s\": %zu of %zu triangles have no area and are left out", list->name, count, count);
@@ -132,23 +150,28 @@ ag_status pbrt_add_object_mesh(pbrt_parser *parser, const parameter_list *list, 
         mesh_reset(m);
         return AG_OK;
     }
+    if (late > 0)
+        log_at(parser->log, AG_LOG_WARNING, list->where,
+               "Shape \"%s\": %zu of %zu triangles have no area when the shutter opens: photons are kept as they lie "
+               "then, so that no indirect light of the photon map is on them",
+               list->name, late, kept);
     m->triangle_count = (uint32_t)kept;
     return pbrt_add_shape(parser, list, &s);
 }
 
 ag_status pbrt_add_mesh(pbrt_parser *parser, const parameter_list *list, const pbrt_mesh *source)
 {
-    mesh m = {.indices = source->indices};
+    mesh m = {.indices = source->indices, .motion_segments = source->motion_segments};
     if (source->vertex_count >= UINT32_MAX / 4 || source->triangle_count >= UINT32_MAX / 4) {
         mesh_reset(&m);
         return pbrt_refuse(parser, list, "P", "the mesh is too large");
     }
+    m.vertex_count = (uint32_t)source->vertex_count;
+    m.triangle_count = (uint32_t)source->triangle_count;
     if (!allocate_arrays(source, &m)) {
         mesh_reset(&m);
         return AG_ERROR_MEMORY;
     }
-    m.vertex_count = (uint32_t)source->vertex_count;
-    m.triangle_count = (uint32_t)source->triangle_count;
     copy_vertices(source, &m);
     return pbrt_add_object_mesh(parser, list, &m, 0, source->expects_degenerate);
 }
@@ -177,6 +200,28 @@ static ag_status read_vertex_data(pbrt_parser *parser, parameter_list *list, con
     return AG_OK;
 }
 
+bool pbrt_has_motion_steps(const char *type)
+{
+    return strcmp(type, "trianglemesh") == 0 || strcmp(type, "loopsubdiv") == 0;
+}
+
+/* "motionsteps", which pbrt does not have: of how many sets P consists, for evenly spaced times of the shutter. Makes
+ * *in_out_vertex_count, of all of them, that of one. */
+static ag_status read_motion_steps(pbrt_parser *parser, parameter_list *list, size_t *in_out_vertex_count,
+                                   uint32_t *out_segments)
+{
+    int64_t steps = 1;
+    AG_TRY(parameter_get_int(list, parser->log, "motionsteps", &steps));
+    if (steps < 1 || steps > MESH_STEPS_MAX)
+        return pbrt_refuse(parser, list, "motionsteps", "\"motionsteps\" should be from 1 to %d", MESH_STEPS_MAX);
+    if (*in_out_vertex_count % (size_t)steps != 0)
+        return pbrt_refuse(parser, list, "P", "\"P\" has %zu points, which is no multiple of the %d of \"motionsteps\"",
+                           *in_out_vertex_count, (int)steps);
+    *in_out_vertex_count /= (size_t)steps;
+    *out_segments = (uint32_t)steps - 1;
+    return AG_OK;
+}
+
 static ag_status convert_indices(pbrt_parser *parser, const parameter_list *list, const double *numbers, size_t count,
                                  size_t vertex_count, uint32_t *out_indices)
 {
@@ -199,11 +244,14 @@ ag_status pbrt_read_mesh_arrays(pbrt_parser *parser, parameter_list *list, size_
     AG_TRY(parameter_get_numbers(list, parser->log, "P", PARAMETER_POINT3, &out_mesh->positions, &position_count));
     if (!parameter_list_find(list, "P"))
         return pbrt_refuse(parser, list, "P", "\"point3 P\" is missing");
-    size_t vertex_count = out_mesh->vertex_count = position_count / 3;
-    AG_TRY(read_vertex_data(parser, list, "N", PARAMETER_NORMAL, 3 * vertex_count, &out_mesh->normals));
+    size_t vertex_count = position_count / 3, numbers_of_all = 3 * vertex_count;
+    if (corners == 3)
+        AG_TRY(read_motion_steps(parser, list, &vertex_count, &out_mesh->motion_segments));
+    out_mesh->vertex_count = vertex_count;
+    AG_TRY(read_vertex_data(parser, list, "N", PARAMETER_NORMAL, numbers_of_all, &out_mesh->normals));
     AG_TRY(read_vertex_data(parser, list, "uv", PARAMETER_POINT2, 2 * vertex_count, &out_mesh->uvs));
     if (corners == 3) /* patches have none */
-        AG_TRY(read_vertex_data(parser, list, "S", PARAMETER_VECTOR3, 3 * vertex_count, &out_mesh->tangents));
+        AG_TRY(read_vertex_data(parser, list, "S", PARAMETER_VECTOR3, numbers_of_all, &out_mesh->tangents));
     /* face numbers serve Ptex only */
     AG_TRY(parameter_get_numbers(list, parser->log, "faceIndices", PARAMETER_INTEGER, &unused, &unused_count));
     AG_TRY(parameter_get_numbers(list, parser->log, "indices", PARAMETER_INTEGER, &numbers, &number_count));
@@ -248,15 +296,16 @@ static bool stays_as_it_is(const transform *t, const float *numbers, size_t coun
 
 static ag_status borrow_positions(const pbrt_parser *parser, const pbrt_borrowed *from, mesh *m)
 {
-    if (stays_as_it_is(&parser->state.world_from_object, from->positions, 3 * from->vertex_count)) {
+    const size_t count = mesh_value_count(m);
+    if (stays_as_it_is(&parser->state.world_from_object, from->positions, 3 * count)) {
         m->positions = (vec3 *)(uintptr_t)from->positions; /* nobody writes there */
         m->borrowed |= MESH_BORROWS_POSITIONS;
         return AG_OK;
     }
-    m->positions = calloc(from->vertex_count + 1, sizeof *m->positions);
+    m->positions = calloc(count + 1, sizeof *m->positions);
     if (!m->positions)
         return AG_ERROR_MEMORY;
-    memcpy(m->positions, from->positions, from->vertex_count * sizeof *m->positions);
+    memcpy(m->positions, from->positions, count * sizeof *m->positions);
     return AG_OK;
 }
 
@@ -265,18 +314,22 @@ static ag_status borrow_indices(pbrt_parser *parser, const parameter_list *list,
 {
     bool all_have_area = true;
     for (size_t i = 0; i < from->index_count; i++)
-        if (from->indices[i] < 0 || (size_t)from->indices[i] >= from->vertex_count)
+        if (from->indices[i] < 0 || (size_t)from->indices[i] >= m->vertex_count)
             return pbrt_refuse(parser, list, "indices",
                                "index %d (value %zu of \"indices\") is out of range, there are %zu vertices",
-                               (int)from->indices[i], i + 1, from->vertex_count);
+                               (int)from->indices[i], i + 1, (size_t)m->vertex_count);
     m->indices = (uint32_t *)(uintptr_t)from->indices; /* likewise */
     m->borrowed |= MESH_BORROWS_INDICES;
     for (size_t i = 0; i < m->triangle_count && all_have_area; i++) {
         vec3 corners[3];
         static const uint32_t OWN[3] = {0, 1, 2};
-        for (int k = 0; k < 3; k++)
-            corners[k] = transform_point(&parser->state.world_from_object, m->positions[m->indices[3 * i + (size_t)k]]);
-        all_have_area = has_area(corners, OWN);
+        all_have_area = false;
+        for (size_t step = 0; step <= m->motion_segments && !all_have_area; step++) {
+            const vec3 *positions = m->positions + step * m->vertex_count;
+            for (size_t k = 0; k < 3; k++)
+                corners[k] = transform_point(&parser->state.world_from_object, positions[m->indices[3 * i + k]]);
+            all_have_area = has_area(corners, OWN);
+        }
     }
     if (all_have_area)
         return AG_OK;
@@ -289,12 +342,12 @@ static ag_status borrow_indices(pbrt_parser *parser, const parameter_list *list,
 }
 
 /* Directions are made unit, and so copied. */
-static ag_status copy_directions(const double *numbers, size_t vertex_count, vec3 **out)
+static ag_status copy_directions(const double *numbers, size_t count, vec3 **out)
 {
     if (!numbers)
         return AG_OK;
-    *out = malloc(vertex_count * sizeof **out);
-    for (size_t i = 0; *out && i < vertex_count; i++)
+    *out = malloc(count * sizeof **out);
+    for (size_t i = 0; *out && i < count; i++)
         (*out)[i] = float_direction(numbers + 3 * i);
     return *out ? AG_OK : AG_ERROR_MEMORY;
 }
@@ -304,20 +357,21 @@ static ag_status read_borrowed(pbrt_parser *parser, parameter_list *list, const 
     static const char *const NAMES[] = {"P", "uv", "indices", "faceIndices"};
     static const parameter_type TYPES[] = {PARAMETER_POINT3, PARAMETER_POINT2, PARAMETER_INTEGER, PARAMETER_INTEGER};
     const double *normals, *tangents, *unused;
-    size_t unused_count;
+    size_t unused_count, vertex_count = from->vertex_count;
     for (int i = 0; i < 4; i++) /* marks them as known */
         AG_TRY(parameter_get_numbers(list, parser->log, NAMES[i], TYPES[i], &unused, &unused_count));
+    AG_TRY(read_motion_steps(parser, list, &vertex_count, &m->motion_segments));
     AG_TRY(read_vertex_data(parser, list, "N", PARAMETER_NORMAL, 3 * from->vertex_count, &normals));
     AG_TRY(read_vertex_data(parser, list, "S", PARAMETER_VECTOR3, 3 * from->vertex_count, &tangents));
     parameter_list_warn_unused(list, parser->log);
-    if (from->vertex_count >= UINT32_MAX / 4 || from->index_count / 3 >= UINT32_MAX / 4)
+    if (vertex_count >= UINT32_MAX / 4 || from->index_count / 3 >= UINT32_MAX / 4)
         return pbrt_refuse(parser, list, "P", "the mesh is too large");
     if (from->index_count % 3 != 0)
         return pbrt_refuse(parser, list, "indices", "\"indices\" has %zu values, which is no multiple of 3",
                            from->index_count);
-    m->vertex_count = (uint32_t)from->vertex_count;
+    m->vertex_count = (uint32_t)vertex_count;
     m->triangle_count = (uint32_t)(from->index_count / 3);
-    if (from->uvs && has_count(parser, list, "uv", from->uv_count, 2 * from->vertex_count)) {
+    if (from->uvs && has_count(parser, list, "uv", from->uv_count, 2 * vertex_count)) {
         m->uvs = (vec2 *)(uintptr_t)from->uvs;
         m->borrowed |= MESH_BORROWS_UVS;
     }

@@ -8,12 +8,13 @@
 
 /* A mesh in object space as the file has it. */
 typedef struct pbrt_mesh {
-    const double *positions; /* 3 per vertex */
-    const double *normals;   /* 3 per vertex, or NULL */
+    const double *positions; /* 3 per vertex, of each of the sets */
+    const double *normals;   /* likewise, or NULL */
     const double *uvs;       /* 2 per vertex, or NULL */
-    const double *tangents;  /* 3 per vertex, or NULL */
+    const double *tangents;  /* as positions, or NULL */
     size_t vertex_count;
-    uint32_t *indices; /* 3 per triangle, each < vertex_count; from malloc */
+    uint32_t motion_segments; /* sets of positions, normals and tangents beside the first, as a mesh has them */
+    uint32_t *indices;        /* 3 per triangle, each < vertex_count; from malloc */
     size_t triangle_count;
     bool expects_degenerate; /* triangles without area are no fault of the file's */
 } pbrt_mesh;
@@ -24,6 +25,8 @@ ag_status pbrt_add_mesh(pbrt_parser *parser, const parameter_list *list, const p
  * and taken, also on failure. dropped: triangles that were left out before, for the warning. */
 ag_status pbrt_add_object_mesh(pbrt_parser *parser, const parameter_list *list, mesh *object_mesh, size_t dropped,
                                bool expects_degenerate);
+/* Whether shapes of that type may have "motionsteps". */
+bool pbrt_has_motion_steps(const char *type);
 /* Reads the arrays that meshes have in common, all but triangle_count. There are *out_index_count indices, a multiple
  * of corners, from malloc: those of the file, or 0, 1, 2, ... where it has none and the vertices are a single face. */
 ag_status pbrt_read_mesh_arrays(pbrt_parser *parser, parameter_list *list, size_t corners, pbrt_mesh *out_mesh,

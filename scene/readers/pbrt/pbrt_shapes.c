@@ -2,7 +2,9 @@
  * Rests on the format's description, pbrt.org/fileformat-v4, "Shapes"; and for which side is outside on Pharr, Jakob,
  * Humphreys, "Physically Based Rendering", 4th ed., 2023, ch. 6.
  * Flow: pbrt_parser -> [here] -> scene.shapes. Threads: one per scene. */
-#include "pbrt/pbrt_private.h"
+#include "pbrt/pbrt_meshes.h"
+
+#include "shape/mesh_motion.h"
 
 #include <string.h>
 
@@ -33,6 +35,12 @@ ag_status pbrt_add_shape(pbrt_parser *parser, const parameter_list *list, shape 
         log_at(parser->log, AG_LOG_WARNING, list->where,
                "a shape with the material \"interface\" cannot shine: its area light is left out");
         shines = false;
+    }
+    if (shines && shape_is_deforming(s)) {
+        log_at_once(parser->log, AG_LOG_WARNING, list->where, "deforming light",
+                    "a shape with an area light whose vertices move is not supported: it stands as it does at the "
+                    "opening of the shutter");
+        s->as.mesh.motion_segments = 0;
     }
     if (shines && parser->open_object)
         return pbrt_add_object_lamp(parser, s, list->where);
@@ -187,6 +195,10 @@ static ag_status read_kind(pbrt_parser *parser, parameter_list *list)
                    {"bilinearmesh", pbrt_bilinear_mesh},
                    {"curve", pbrt_curve}};
     AG_TRY(read_alpha(parser, list));
+    if (!pbrt_has_motion_steps(list->name) && parameter_list_find(list, "motionsteps"))
+        return pbrt_refuse(parser, list, "motionsteps",
+                           "Shape \"%s\" cannot have \"motionsteps\", as \"trianglemesh\" and \"loopsubdiv\" can",
+                           list->name);
     if (parser->made_mesh)
         return is_nothing(parser) ? AG_OK : add_made_mesh(parser, list);
     for (size_t i = 0; i < sizeof READERS / sizeof *READERS; i++)
