@@ -1,5 +1,6 @@
 /* test_program_same_bits.c: the same picture, bit for bit, whatever the number of threads, on demand and precomputed,
- * twice each, in a plain room, in one full of coincidences and in one that moves; also where few photons keep
+ * twice each, in a plain room, in one full of coincidences, in one that moves and in one
+ * whose meshes bend; also where few photons keep
  * irradiance; and in no run is an irradiance computed twice.
  *
  * Flow: tests of the whole program. Threads: the program's, up to more than there are processors. */
@@ -23,6 +24,7 @@ static const long long PHOTON_COUNT = IS_SANITIZED ? 5000 : 20000;
 
 #define BOX          PROGRAM_SCENES "box_with_blocks.pbrt"
 #define MOTION       PROGRAM_SCENES "moving_blocks.pbrt"
+#define DEFORMATION  PROGRAM_SCENES "deforming_blocks.pbrt"
 #define COINCIDENCES PROGRAM_SCENES "coincidences.pbrt"
 #define PRINCIPLED   PROGRAM_SCENES "principled.pbrt" /* coats and rough metal */
 
@@ -111,6 +113,12 @@ static void test_motion(void **state)
 {
     (void)state;
     expect_same_for_all_threads(MOTION, NULL);
+}
+
+static void test_deformation(void **state)
+{
+    (void)state;
+    expect_same_for_all_threads(DEFORMATION, NULL);
 }
 
 /* Both maps are aimed there. */
@@ -234,6 +242,7 @@ int main(void)
         TEST_IN_FOLDER(test_plain_room),
         TEST_IN_FOLDER(test_coincidences),
         TEST_IN_FOLDER(test_motion),
+        TEST_IN_FOLDER(test_deformation),
         TEST_IN_FOLDER(test_coats_and_metal),
         TEST_IN_FOLDER(test_few_photons_for_many_threads),
         TEST_IN_FOLDER(test_path_tracer),

@@ -88,8 +88,8 @@ AG_API ag_status ag_scene_set_hint(ag_scene *scene, ag_scene_hint hint, const ch
 /* The following structs are initialised by ag_default_...(). Matrices have 16 numbers, row by row, and multiply column
  * vectors: the last column is the translation, the last row is 0 0 0 1. A matrix holds at the opening of the shutter
  * (pbrt's time 0); for objects that move, a second one holds at its closing (time 1). Between the two, translation is
- * linear and rotation uniform, as in pbrt. Deforming meshes and more than two times are not supported: average
- * pictures with shorter shutters instead. */
+ * linear and rotation uniform, as in pbrt. The vertices of meshes may move as well: see ag_shape. For matrices of more
+ * than two times average pictures with shorter shutters. */
 
 /* A picture in memory, which replaces the file of its name in each "string filename" of textures and lights added
  * later: packed, top row first; grey, grey and alpha, RGB, or RGB and alpha. One of bytes and floats is set, the other
@@ -121,6 +121,17 @@ AG_API ag_status ag_scene_add_texture(ag_scene *scene, const ag_texture *texture
  * are never used again; 0 is none. out_handle of the functions below may be NULL. */
 typedef uint64_t ag_handle;
 
+/* A shape. A "trianglemesh" or "loopsubdiv" whose vertices move while the shutter is open has a parameter that pbrt
+ * does not know, "integer motionsteps", from 1 to 129: so many sets of vertices stand one after the other in "P" (of 3
+ * * motionsteps * vertices numbers), and likewise in "N" and "S" where they are there; "uv" and "indices" are those of
+ * one set. The sets are for evenly spaced times from the opening of the shutter to its closing, whatever the camera's
+ * shutter is, and vertices go straight from one to the next. 1 is a mesh at rest. Errors: AG_ERROR_SCENE (another
+ * number of steps, no multiple of it in "P", another type of shape).
+ *
+ * Such a mesh may move by matrices too, and be part of an object. A light (is_light) stands still as it does at the
+ * opening, which a warning says. The photon map has the mean over the shutter of the light on each point, kept where
+ * the point is at the opening: a triangle that has no area then gets no indirect light from the map, which a warning
+ * says. A pane of glass that bends is traced as any glass. */
 typedef struct ag_shape {
     size_t struct_size;
     const char *type; /* "trianglemesh", "sphere", "curve", ... */
@@ -136,14 +147,15 @@ typedef struct ag_shape {
     const ag_parameter *light_parameters;
     size_t light_parameter_count;
     const char *medium_inside, *medium_outside; /* NULL, the default: none */
-    /* The library uses the arrays of a "trianglemesh" in place instead of copying them: "P" and "uv", as floats, and
-     * "indices". They must stay valid and unchanged until the scene is destroyed, or committed after this shape was
-     * changed or removed; and until renderings that still borrow the scene are finished. They are aligned to 4 bytes,
-     * and 4 bytes behind P are readable. Renderings and commits look whether they can be read, and begin and end as
-     * they did, and are AG_ERROR_ARGUMENT where not: so most arrays that were freed are found, but not those whose
-     * memory nobody has written to since. Changes are made by ag_scene_change_shape, best with other arrays: see
-     * scene_editing.h on commits that fail. Arrays that cannot be used in place are copied: P where the shape has a
-     * matrix and does not move, or where a coordinate is -0; indices where a triangle has no area. Default false. */
+    /* The library uses the arrays of a "trianglemesh" in place instead of copying them: "P" (of all motion steps) and
+     * "uv", as floats, and "indices". They must stay valid and unchanged until the scene is destroyed, or committed
+     * after this shape was changed or removed; and until renderings that still borrow the scene are finished. They are
+     * aligned to 4 bytes, and 4 bytes behind P are readable. Renderings and commits look whether they can be read, and
+     * begin and end as they did, and are AG_ERROR_ARGUMENT where not: so most arrays that were freed are found, but not
+     * those whose memory nobody has written to since. Changes are made by ag_scene_change_shape, best with other
+     * arrays: see scene_editing.h on commits that fail. Arrays that cannot be used in place are copied: P where the
+     * shape has a matrix and does not move, or where a coordinate is -0; indices where a triangle has no area. Default
+     * false. */
     bool borrows_arrays;
 } ag_shape;
 AG_DEFAULT_STRUCT(shape, AG_STRUCT_SHAPE)

@@ -1,0 +1,230 @@
+/* test_scene_motion.c: meshes with motion steps by the C API: borrowed and copied arrays, doubles and a file have one
+ * picture, by any number of threads; changes are seen; what is wrong with them is named. Threads: the context's. */
+/* ctest: sanitize */
+#define _GNU_SOURCE
+#include "fixtures/scene_desk.h"
+
+enum { STEPS = 3, VERTICES = 4, COUNT = 3 * SIZE * SIZE };
+
+/* A square at three times, turned and bent; behind P there is room. */
+static float positions[3 * STEPS * VERTICES + 1], normals[3 * STEPS * VERTICES];
+static double doubles[3 * STEPS * VERTICES];
+static const float UVS[] = {0, 0, 1, 0, 1, 1, 0, 1};
+static const int32_t STEP_COUNT = STEPS, INDICES[] = {0, 1, 2, 0, 2, 3};
+
+static void make_arrays(float bend)
+{
+    for (int k = 0; k < STEPS; k++)
+        for (int i = 0; i < VERTICES; i++) {
+            const float *corner = CORNERS + 3 * i, turn = 0.3f * (float)k;
+            float *p = positions + 3 * (k * VERTICES + i), *n = normals + 3 * (k * VERTICES + i);
+            p[0] = 0.7f * (corner[0] - turn * corner[1]);
+            p[1] = 0.7f * (corner[1] + turn * corner[0]);
+            p[2] = 0.25f + bend * (float)(k * i % 3);
+            n[0] = 0.1f * (float)i, n[1] = 0.2f * (float)k, n[2] = -1.0f;
+        }
+    for (int i = 0; i < 3 * STEPS * VERTICES; i++)
+        doubles[i] = (double)positions[i];
+}
+
+typedef struct words {
+    ag_parameter parameters[5];
+    ag_shape shape;
+} words;
+
+static void describe(bool is_borrowed, bool is_of_doubles, words *w)
+{
+    w->parameters[0] = (ag_parameter){"P", AG_PARAMETER_POINT3, 3 * STEPS * VERTICES, .floats = positions};
+    if (is_of_doubles)
+        w->parameters[0].doubles = doubles, w->parameters[0].floats = NULL;
+    w->parameters[1] = (ag_parameter){"uv", AG_PARAMETER_POINT2, 2 * VERTICES, .floats = UVS};
+    w->parameters[2] = (ag_parameter){"indices", AG_PARAMETER_INTEGER, 6, .integers = INDICES};
+    w->parameters[3] = (ag_parameter){"motionsteps", AG_PARAMETER_INTEGER, 1, .integers = &STEP_COUNT};
+    w->parameters[4] = (ag_parameter){"N", AG_PARAMETER_NORMAL, 3 * STEPS * VERTICES, .floats = normals};
+    w->shape = ag_default_shape();
+    w->shape.type = "trianglemesh";
+    w->shape.parameters = w->parameters;
+    w->shape.parameter_count = 5;
+    w->shape.borrows_arrays = is_borrowed;
+}
+
+typedef enum variant { PLAIN, PLACED, MOVING, INSTANCE, MOVING_INSTANCE, VARIANT_COUNT } variant;
+
+static void add_mesh(desk *d, words *w, variant v)
+{
+    ag_instance shown = ag_default_instance();
+    w->shape.world_from_shape = v == PLACED ? ASIDE : NULL;
+    w->shape.world_from_shape_end = v == MOVING ? ASIDE : NULL;
+    w->shape.object = shown.object = v >= INSTANCE ? "o" : NULL;
+    shown.world_from_object_end = v == MOVING_INSTANCE ? ASIDE : NULL;
+    assert_int_equal(ag_scene_add_shape(d->made, &w->shape, NULL), AG_OK);
+    if (v >= INSTANCE)
+        assert_int_equal(ag_scene_add_instance(d->made, &shown, NULL), AG_OK);
+}
+
+static void add_floor(desk *d)
+{
+    square s;
+    make_square(&s);
+    s.shape.world_from_shape = (const double[]){3, 0, 0, 0, 0, 3, 0, 0, 0, 0, 3, 1, 0, 0, 0, 1};
+    assert_int_equal(ag_scene_add_shape(d->made, &s.shape, NULL), AG_OK);
+}
+
+static void render_mesh(bool is_borrowed, bool is_of_doubles, bool is_editable, variant v, float *out_pixels)
+{
+    desk d;
+    words w;
+    if (is_editable)
+        begin_lit_editable(&d);
+    else
+        begin_lit(&d);
+    add_floor(&d);
+    describe(is_borrowed, is_of_doubles, &w);
+    add_mesh(&d, &w, v);
+    assert_int_equal(ag_scene_commit(d.made), AG_OK);
+    render(d.context, d.made, out_pixels);
+    if (d.said[0])
+        fail_msg("said: %s", d.said);
+    end(&d);
+}
+
+static void all_ways_have_one_picture(void **state)
+{
+    (void)state;
+    float first[COUNT], other[COUNT], still[COUNT];
+    make_arrays(0.05f);
+    for (variant v = PLAIN; v < VARIANT_COUNT; v++) {
+        desk_thread_count = 1;
+        render_mesh(false, false, false, v, first);
+        for (unsigned threads = 2; threads <= 5; threads += 3) {
+            desk_thread_count = threads;
+            render_mesh(false, false, false, v, other);
+            assert_memory_equal(first, other, sizeof first);
+        }
+        desk_thread_count = 2;
+        render_mesh(true, false, false, v, other);
+        assert_memory_equal(first, other, sizeof first);
+        render_mesh(false, true, false, v, other);
+        assert_memory_equal(first, other, sizeof first);
+        render_mesh(true, false, true, v, other);
+        assert_memory_equal(first, other, sizeof first);
+        if (v == PLAIN)
+            memcpy(still, first, sizeof first);
+        else if (v != INSTANCE)
+            assert_memory_not_equal(still, first, sizeof first); /* something happens */
+    }
+}
+
+/* A step that is written to and told of is seen, and what is not changed is kept. */
+static void a_changed_step_is_seen(void **state)
+{
+    (void)state;
+    desk d;
+    words w;
+    ag_handle handle;
+    float first[COUNT], changed[COUNT], afresh[COUNT];
+    for (int is_borrowed = 0; is_borrowed < 2; is_borrowed++) {
+        make_arrays(0.05f);
+        begin_lit_editable(&d);
+        add_floor(&d);
+        describe(is_borrowed, false, &w);
+        assert_int_equal(ag_scene_add_shape(d.made, &w.shape, &handle), AG_OK);
+        assert_int_equal(ag_scene_commit(d.made), AG_OK);
+        render(d.context, d.made, first);
+        positions[3 * (2 * VERTICES + 1) + 2] += 0.2f; /* of the last step alone */
+        doubles[3 * (2 * VERTICES + 1) + 2] = (double)positions[3 * (2 * VERTICES + 1) + 2];
+        assert_int_equal(ag_scene_change_shape(d.made, handle, &w.shape), AG_OK);
+        assert_int_equal(ag_scene_commit(d.made), AG_OK);
+        assert_int_equal(ag_scene_commit_counts(d.made).trees_built, 2);
+        render(d.context, d.made, changed);
+        end(&d);
+        assert_memory_not_equal(first, changed, sizeof first);
+        render_mesh(false, false, false, PLAIN, afresh);
+        assert_memory_equal(changed, afresh, sizeof changed);
+    }
+}
+
+/* The shutter of what moves by vertices alone may be another: its steps are spread over any, and it is a quarter as
+ * bright. */
+static void another_shutter_is_fine(void **state)
+{
+    (void)state;
+    desk d;
+    words w;
+    make_arrays(0.05f);
+    const float closing = 0.25f;
+    const ag_parameter shutter = {"shutterclose", AG_PARAMETER_FLOAT, 1, .floats = &closing};
+    ag_camera eye = ag_default_camera();
+    eye.world_from_camera = AWAY;
+    eye.parameters = &shutter;
+    eye.parameter_count = 1;
+    float first[COUNT], other[COUNT];
+    begin_lit(&d);
+    describe(false, false, &w);
+    add_mesh(&d, &w, PLAIN);
+    assert_int_equal(ag_scene_commit(d.made), AG_OK);
+    render(d.context, d.made, first);
+    assert_int_equal(ag_scene_set_camera(d.made, &eye), AG_OK);
+    render(d.context, d.made, other);
+    for (int i = 0; i < COUNT; i++)
+        assert_true(first[i] == 4.0f * other[i]);
+    end(&d);
+}
+
+static void expect_refused(desk *d, const words *w, ag_status status, const char *what)
+{
+    assert_int_equal(ag_scene_add_shape(d->made, &w->shape, NULL), status);
+    expect_said(d, what);
+}
+
+static void mistakes_are_named(void **state)
+{
+    (void)state;
+    static const int32_t NONE = 0, MANY = 130, FIVE = 5;
+    make_arrays(0.05f);
+    for (int is_borrowed = 0; is_borrowed < 2; is_borrowed++) {
+        desk d;
+        words w;
+        begin_lit(&d);
+        describe(is_borrowed, false, &w);
+        w.parameters[3].integers = &NONE;
+        expect_refused(&d, &w, AG_ERROR_SCENE,
+                       "ag_scene_add_shape:1:4: error: \"motionsteps\" should be from 1 to 129");
+        w.parameters[3].integers = &MANY;
+        expect_refused(&d, &w, AG_ERROR_SCENE,
+                       "ag_scene_add_shape:2:4: error: \"motionsteps\" should be from 1 to 129");
+        w.parameters[3].integers = &FIVE;
+        expect_refused(&d, &w, AG_ERROR_SCENE,
+                       ":3:1: error: \"P\" has 12 points, which is no multiple of the 5 of \"motionsteps\"");
+        describe(is_borrowed, false, &w);
+        w.parameters[2].integers = (const int32_t[]){0, 1, 2, 0, 2, 4}; /* of the second step's */
+        expect_refused(&d, &w, AG_ERROR_SCENE,
+                       ":4:3: error: index 4 (value 6 of \"indices\") is out of range, there are 4 vertices");
+        describe(is_borrowed, false, &w);
+        positions[30] = NAN;
+        expect_refused(&d, &w, AG_ERROR_ARGUMENT, is_borrowed ? "a value is not finite" : "value 31 is not finite");
+        make_arrays(0.05f);
+        describe(is_borrowed, false, &w);
+        w.parameters[4].count = 3 * VERTICES; /* of one step alone */
+        assert_int_equal(ag_scene_add_shape(d.made, &w.shape, NULL), AG_OK);
+        expect_said(&d, "\"N\" should have 36 numbers as \"P\" goes, but has 12, and is ignored");
+        describe(is_borrowed, false, &w);
+        w.shape.is_light = true;
+        assert_int_equal(ag_scene_add_shape(d.made, &w.shape, NULL), AG_OK);
+        expect_said(&d, "a shape with an area light whose vertices move is not supported: it stands as it does at the "
+                        "opening of the shutter");
+        assert_int_equal(ag_scene_commit(d.made), AG_OK);
+        end(&d);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(all_ways_have_one_picture),
+        cmocka_unit_test(a_changed_step_is_seen),
+        cmocka_unit_test(another_shutter_is_fine),
+        cmocka_unit_test(mistakes_are_named),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
