@@ -8,8 +8,14 @@ import numpy as np
 from .atlas import Corners
 from .materials import IN_SPACE
 
-# corners: of a part whose textures are made in space, else None.
+SURFACES = {"MESH", "CURVE", "SURFACE", "FONT", "META"}
+
+# positions, normals: (count, 3), or of a mesh that deforms (steps, count, 3). corners: of a part whose textures are made in
+# space, else None.
 Part = namedtuple("Part", "slot positions triangles normals uvs corners", defaults=(None,))
+
+# A mesh at one time: positions of its vertices, normals of its loops (or None), and the vertices of the loops.
+Pose = namedtuple("Pose", "positions normals loop_vertices")
 
 
 def _array(collection, name, width, dtype):
@@ -90,55 +96,89 @@ def _plain_normals(mesh, positions, loop_vertices, is_smooth):
     return np.where(is_smooth[face_of][:, None], smooth, faces[face_of]).astype(np.float32)
 
 
-def _part_in_space(mesh, slot, chosen, positions, loop_vertices, normals):
+def _normals(mesh, positions, loop_vertices):
+    """Of the loops; None where all faces are flat."""
+    is_smooth = _array(mesh.polygons, "use_smooth", 1, bool)
+    if not is_smooth.any():
+        return None
+    if mesh.use_auto_smooth or mesh.has_custom_normals:
+        mesh.calc_normals_split()
+        return _array(mesh.loops, "normal", 3, np.float32)
+    return _plain_normals(mesh, positions, loop_vertices, is_smooth)
+
+
+def pose_of(mesh, before=None):
+    """The mesh as it is now; `before` itself, an earlier pose, where it has not changed."""
+    positions = _array(mesh.vertices, "co", 3, np.float32)
+    loop_vertices = _array(mesh.loops, "vertex_index", 1, np.int32)
+    if before and np.array_equal(positions, before.positions) and np.array_equal(loop_vertices, before.loop_vertices):
+        return before
+    return Pose(positions, _normals(mesh, positions, loop_vertices), loop_vertices)
+
+
+def _agree(poses, normals, loop_vertices):
+    """Whether all poses are of one mesh, but for where its vertices are."""
+    return all(pose and np.array_equal(pose.loop_vertices, loop_vertices) and (pose.normals is None) == (normals is None)
+               and len(pose.positions) == len(poses[0].positions) for pose in poses)
+
+
+def _part_in_space(mesh, slot, chosen, positions, loop_vertices, moving, moving_normals):
     """No two triangles have a vertex in common."""
     vertices = loop_vertices[chosen]
     uvs = {layer.name: _array(layer.data, "uv", 2, np.float32)[chosen] for layer in mesh.uv_layers}
     uvs[""] = _uvs(mesh, "")[chosen]
     corners = Corners(positions[vertices], _generated(positions)[vertices], uvs)
-    return Part(int(slot), positions[vertices].reshape(-1, 3), np.arange(chosen.size, dtype=np.int32).reshape(-1, 3),
-                None if normals is None else normals[chosen].reshape(-1, 3), None, corners)
+    return Part(int(slot), moving[..., vertices.ravel(), :], np.arange(chosen.size, dtype=np.int32).reshape(-1, 3),
+                None if moving_normals is None else moving_normals[..., chosen.ravel(), :], None, corners)
 
 
-def parts_of(mesh, layouts):
-    """The parts of an evaluated mesh. layouts: for each material slot how its pictures are laid out (see _layout), or
-    IN_SPACE."""
+def parts_of(mesh, layouts, poses=None):
+    """The parts of an evaluated mesh, and whether they are as it was asked. layouts: for each material slot how its pictures
+    are laid out (see _layout), or IN_SPACE. poses: of the mesh from the opening of the shutter to its closing; where they
+    are not of this mesh the parts are at rest, which is not as it was asked."""
     mesh.calc_loop_triangles()
     if not mesh.loop_triangles:
-        return []
+        return [], True
     positions = _array(mesh.vertices, "co", 3, np.float32)
     loop_vertices = _array(mesh.loops, "vertex_index", 1, np.int32)
     triangles = _array(mesh.loop_triangles, "loops", 3, np.int32)
     slots = _array(mesh.loop_triangles, "material_index", 1, np.int32)
-    is_smooth = _array(mesh.polygons, "use_smooth", 1, bool)
-    normals = None
-    if is_smooth.any():
-        if mesh.use_auto_smooth or mesh.has_custom_normals:
-            mesh.calc_normals_split()
-            normals = _array(mesh.loops, "normal", 3, np.float32)
-        else:
-            normals = _plain_normals(mesh, positions, loop_vertices, is_smooth)
+    normals = _normals(mesh, positions, loop_vertices)
+    moving, moving_normals = positions, normals
+    agree = not poses or _agree(poses, normals, loop_vertices)
+    if poses and agree:
+        moving = np.stack([pose.positions for pose in poses])
+        moving_normals = None if normals is None else np.stack([pose.normals for pose in poses])
     parts = []
     slots = np.clip(slots, 0, max(len(layouts) - 1, 0))
     for slot in np.unique(slots):
         chosen = triangles[slots == slot]
         if layouts and layouts[slot] == IN_SPACE:
-            parts.append(_part_in_space(mesh, slot, chosen, positions, loop_vertices, normals))
+            parts.append(_part_in_space(mesh, slot, chosen, positions, loop_vertices, moving, moving_normals))
             continue
         uvs = _layout(mesh, layouts[slot] if layouts else None, positions, loop_vertices)
         if normals is None and uvs is None:
             used, indices = np.unique(loop_vertices[chosen], return_inverse=True)
-            parts.append(Part(int(slot), positions[used], indices.astype(np.int32), None, None))
+            parts.append(Part(int(slot), moving[..., used, :], indices.astype(np.int32), None, None))
             continue
         used, indices = np.unique(chosen, return_inverse=True)
-        parts.append(Part(int(slot), positions[loop_vertices[used]], indices.astype(np.int32),
-                          None if normals is None else normals[used], None if uvs is None else uvs[used]))
-    return parts
+        parts.append(Part(int(slot), moving[..., loop_vertices[used], :], indices.astype(np.int32),
+                          None if normals is None else moving_normals[..., used, :], None if uvs is None else uvs[used]))
+    return parts, agree
+
+
+def at_rest(part):
+    """The part as it is at the opening of the shutter."""
+    if part.positions.ndim == 2:
+        return part
+    return part._replace(positions=part.positions[0], normals=None if part.normals is None else part.normals[0])
 
 
 def parameters_of(part):
     """As those of a shape "trianglemesh"."""
     parameters = {"point3 P": part.positions, "integer indices": part.triangles}
+    if part.positions.ndim == 3:
+        parameters["integer motionsteps"] = len(part.positions)
     if part.normals is not None:
         parameters["normal N"] = part.normals
     if part.uvs is not None:

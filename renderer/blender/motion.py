@@ -1,8 +1,11 @@
-"""Motion blur: where all that is drawn stands when the shutter opens and when it closes; between, it goes straight on."""
+"""Motion blur: where all that is drawn stands when the shutter opens and when it closes; between, it goes straight on. Of
+what deforms (shape keys, armatures and other modifiers that move vertices) the mesh at steps between as well."""
 
 import math
 
-from . import cameras
+from . import cameras, meshes
+
+_STEPS_MOST = 129  # of the renderer, and of Cycles
 
 
 def _key(instance):
@@ -19,11 +22,46 @@ def _poses(depsgraph):
     return poses
 
 
-class Motion:
-    """opened, closed: poses by key, or None where nothing moves."""
+def _steps_of(shown):
+    """The times at which Cycles looks at a mesh that deforms."""
+    cycles = getattr(shown, "cycles", None)
+    return min(2 ** (cycles.motion_steps if cycles else 1) + 1, _STEPS_MOST)
 
-    def __init__(self, opened=None, closed=None):
-        self._opened, self._closed = opened, closed
+
+def _has(instance, name):
+    """Whether Cycles' switches of that name are on, of the object and of what it is an instance for."""
+    owners = [instance.object] + ([instance.parent] if instance.is_instance and instance.parent else [])
+    return all(getattr(getattr(owner, "cycles", None), name, True) for owner in owners)
+
+
+def _may_deform(instance, scene):
+    return (_has(instance, "use_motion_blur") and _has(instance, "use_deform_motion")
+            and instance.object.type in meshes.SURFACES and instance.object.is_deform_modified(scene, "RENDER"))
+
+
+def _shapes(depsgraph, before):
+    """The poses of what may deform; those that have not changed are the ones of `before`, of the first step."""
+    shapes, by_data = {}, {}
+    for instance in depsgraph.object_instances:
+        if not instance.show_self or not _may_deform(instance, depsgraph.scene):
+            continue
+        key, data = _key(instance), instance.object.data.as_pointer()
+        if data not in by_data:
+            try:
+                mesh = instance.object.to_mesh()
+            except RuntimeError:
+                mesh = None
+            by_data[data] = meshes.pose_of(mesh, before.get(key)) if mesh else None
+            instance.object.to_mesh_clear()
+        shapes[key] = by_data[data]
+    return shapes
+
+
+class Motion:
+    """opened, closed: poses by key, or None where nothing moves. shapes: for each step the poses of meshes, by key."""
+
+    def __init__(self, opened=None, closed=None, shapes=()):
+        self._opened, self._closed, self._shapes = opened, closed, shapes
 
     def _pair(self, key, matrix):
         if self._opened is None or key not in self._opened or key not in self._closed:
@@ -33,7 +71,17 @@ class Motion:
 
     def of_instance(self, instance, matrix):
         """Its matrix when the shutter opens, and when it closes; the latter None where it stands still."""
-        return self._pair(_key(instance), matrix)
+        return self._pair(_key(instance), matrix) if _has(instance, "use_motion_blur") else (matrix, None)
+
+    def of_shape(self, instance):
+        """Its poses from the opening of the shutter to its closing, of which some may be None; None where it keeps its
+        shape."""
+        key = _key(instance)
+        if not self._shapes or not any(key in shapes for shapes in self._shapes):
+            return None
+        stride = (len(self._shapes) - 1) // (_steps_of(instance.object) - 1)
+        poses = [shapes.get(key) for shapes in self._shapes[::max(stride, 1)]]
+        return None if all(pose is poses[0] for pose in poses) else poses
 
     def of_camera(self, name, matrix):
         return self._pair(("camera", name), matrix)
@@ -51,9 +99,16 @@ def look_ahead(engine, depsgraph, notes):
         notes.say("the shutter is open for all lines at once here, not rolling")
     frame, shutter = scene.frame_current + scene.frame_subframe, render.motion_blur_shutter
     first = frame - {"START": 0.0, "CENTER": 0.5, "END": 1.0}[position] * shutter
-    poses = []
-    for when in (first, first + shutter, frame):
+    steps = max((_steps_of(instance.object) for instance in depsgraph.object_instances
+                 if _may_deform(instance, scene)), default=0)
+    last = max(steps, 2) - 1
+    poses, shapes = [], []
+    for k in range(last + 1):
+        when = first + shutter * k / last
         engine.frame_set(math.floor(when), when - math.floor(when))
-        if len(poses) < 2:
+        if k in (0, last):
             poses.append(_poses(depsgraph))
-    return Motion(*poses)
+        if steps:
+            shapes.append(_shapes(depsgraph, shapes[0] if shapes else {}))
+    engine.frame_set(math.floor(frame), frame - math.floor(frame))
+    return Motion(*poses, shapes)

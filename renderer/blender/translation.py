@@ -10,7 +10,6 @@ from .passes import group_of
 
 # Of a mesh's textures that are computed place by place; for each pixel of the picture where the mesh is nearest.
 _PIXELS_LEAST, _PIXELS_MOST, _PIXELS_IN_VIEW, _PIXELS_FOR_EACH = 1 << 16, 1 << 20, 1 << 16, 16
-_SURFACES = {"MESH", "CURVE", "SURFACE", "FONT", "META"}
 
 
 class _Model:
@@ -39,7 +38,7 @@ class _Sharpness:
     def pixels(self, part, matrix, is_instance):
         if self._camera is None:
             return _PIXELS_IN_VIEW
-        each = cameras.pixels_of_unit(self._camera, self._size, matrix, part.positions, is_instance)
+        each = cameras.pixels_of_unit(self._camera, self._size, matrix, part.positions.reshape(-1, 3), is_instance)
         a, b, c = part.corners.positions.astype(np.float64).transpose(1, 0, 2)
         area = 0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=-1).sum()
         return int(np.clip(_PIXELS_FOR_EACH * area * each ** 2, _PIXELS_LEAST, _PIXELS_MOST))
@@ -52,8 +51,8 @@ def _make_in_space(parts, looks, materials, pixels_of):
             looks[part.slot], parts[k] = materials.look_in_space(looks[part.slot], part, pixels_of(part))
 
 
-def _model(instance_object, materials, name, notes, pixels_of):
-    """Reads the mesh at once: what Blender makes for an instance goes with it."""
+def _model(instance_object, materials, name, notes, pixels_of, poses):
+    """Reads the mesh at once: what Blender makes for an instance goes with it. poses: of a mesh that deforms, or None."""
     looks = _look_list(instance_object, materials)
     try:
         mesh = instance_object.to_mesh()
@@ -62,9 +61,12 @@ def _model(instance_object, materials, name, notes, pixels_of):
     if mesh is None:
         return None
     try:
-        parts = meshes.parts_of(mesh, [look.layout for look in looks])
+        parts, agree = meshes.parts_of(mesh, [look.layout for look in looks], poses)
     finally:
         instance_object.to_mesh_clear()
+    if not agree:
+        notes.say(f'object "{instance_object.name}": its mesh has other vertices or faces while the shutter is open, and does '
+                  'not deform')
     if any(_has_generated(look) for look in looks) and instance_object.modifiers:
         notes.say(f'object "{instance_object.name}": Generated coordinates are those after its modifiers')
     bad = [part for part in parts if not np.isfinite(part.positions).all()]
@@ -72,6 +74,10 @@ def _model(instance_object, materials, name, notes, pixels_of):
         notes.say(f'object "{instance_object.name}": vertices that are not finite are left out with their material')
         parts = [part for part in parts if np.isfinite(part.positions).all()]
     _make_in_space(parts, looks, materials, pixels_of)
+    for k, part in enumerate(parts):
+        if part.positions.ndim == 3 and looks[part.slot].light is not None:
+            parts[k] = meshes.at_rest(part)
+            notes.say(f'object "{instance_object.name}": what shines of it does not deform while the shutter is open')
     return _Model(name, parts, looks, group_of(instance_object))
 
 
@@ -151,13 +157,15 @@ def translate(scene, depsgraph, motion, notes, poll, view=None, is_by_name=False
         if layer.use_strand and instance.show_particles and not instance.is_instance and shown.type == "MESH":
             hair.add_particle_hair(scene, shown, materials, poll)
             hairy.add(shown.name)
+            if motion.of_shape(instance) or motion.of_instance(instance, cameras.matrix_of(instance.matrix_world))[1] is not None:
+                notes.say(f'object "{shown.name}": its hair stands still while the shutter is open')
         if not instance.show_self:
             continue
         _tell_visibility(shown, notes)
         matrix = cameras.matrix_of(instance.matrix_world)
         if shown.type == "LIGHT":
             lamps.add_lamp(scene, shown, matrix, notes)
-        elif shown.type in _SURFACES and layer.use_solid:
+        elif shown.type in meshes.SURFACES and layer.use_solid:
             key = _key(shown, is_by_name)
             if key not in models:
                 name = shown.name
@@ -165,7 +173,7 @@ def translate(scene, depsgraph, motion, notes, poll, view=None, is_by_name=False
                     name = f"{name}#{len(models)}"
                 taken.add(name)
                 models[key] = _model(shown, materials, name, notes, lambda part: sharpness.pixels(
-                    part, matrix, instance.is_instance))
+                    part, matrix, instance.is_instance), motion.of_shape(instance))
             if models[key]:
                 models[key].places.append(motion.of_instance(instance, matrix))
         elif shown.type == "CURVES" and layer.use_strand:
