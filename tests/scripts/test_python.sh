@@ -269,6 +269,19 @@ with afterglow.Context(threads=2, progress=lambda phase, fraction: phases.append
             assert abs(channels["Z"][15, 20] - 3) < 0.01
     with context.load("scene.pbrt") as scene:
         assert numpy.array_equal(scene.render(**picture), pixels)
+    # vertices that move while the shutter is open
+    pictures = []
+    for steps, borrow in ((2, False), (2, True), (1, False)):
+        swing = afterglow.vertices(4 * steps).reshape(steps, 4, 3)
+        swing[:] = corners
+        swing[-1] += numpy.float32((0.0 if steps == 1 else 0.5, 0, 0))
+        with context.scene() as scene:
+            scene.camera("perspective", {"float fov": 60}, world_from_camera=away)
+            scene.light("point", {"rgb I": (9, 9, 9), "point3 from": (1, 1, -2)})
+            scene.shape("trianglemesh", {"point3 P": swing, "integer indices": triangles, "integer motionsteps": steps},
+                        borrow=borrow)
+            pictures.append(scene.render(**picture))
+    assert numpy.array_equal(pictures[0], pictures[1]) and not numpy.array_equal(pictures[0], pictures[2])
     # changes, in the end back to the picture above; arrays that are borrowed, and written to
     mesh = afterglow.vertices(4)
     mesh[:] = corners + 0.25

@@ -109,7 +109,8 @@ class Scene:
               medium_inside: Optional[str] = None, medium_outside: Optional[str] = None, borrow: bool = False,
               instead_of: Optional[int] = None) -> int:
         """A shape; gives its handle. object: the name of what it is a part of, which instances show; None: it stands where
-        it is. light: the parameters of an AreaLightSource, {} for its defaults; None: it does not shine.
+        it is. light: the parameters of an AreaLightSource, {} for its defaults; None: it does not shine. Of a "trianglemesh"
+        whose vertices move while the shutter is open P is (steps, vertices, 3), N likewise, and "integer motionsteps" is steps.
 
         borrow: the arrays of a "trianglemesh", P from vertices() and uv of 32-bit floats, indices of 32-bit integers, are
         used where they are, without a copy, and kept alive; who writes to them says so by instead_of. instead_of: the
