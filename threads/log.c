@@ -51,10 +51,26 @@ void log_speak(log_sink *log, ag_log_fn *fn) { log->fn = fn; }
 
 static bool is_silent(const log_sink *log) { return !log || !log->fn; }
 
+/* Names in a stranger's file may hold what a terminal obeys: control characters of ASCII, and those of Unicode, which
+ * UTF-8 begins with 0xc2. Line ends stay, since messages have several lines. */
+static void replace_controls(char *message)
+{
+    for (unsigned char *c = (unsigned char *)message; *c; c++) {
+        const bool is_pair = c[0] == 0xc2 && c[1] >= 0x80 && c[1] < 0xa0;
+        if (*c == '\t')
+            *c = ' ';
+        else if ((*c < ' ' && *c != '\n') || *c == 0x7f || is_pair)
+            *c = '?';
+        if (is_pair)
+            *++c = '?';
+    }
+}
+
 static void speak(log_sink *log, ag_log_level level, char *message, size_t length)
 {
     while (length > 0 && (message[length - 1] == '\n' || message[length - 1] == '\r'))
         message[--length] = '\0';
+    replace_controls(message);
     pthread_mutex_lock(&log->mutex);
     log->fn(log->user, level, message);
     pthread_mutex_unlock(&log->mutex);

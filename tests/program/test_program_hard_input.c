@@ -69,6 +69,23 @@ static void expect_accepted(const char *scene, const char *warning)
 
 /* ---- the scene file itself ---- */
 
+/* Names in files of models reach messages, and must not reach the terminal as commands. */
+static void test_names_that_command_terminals(void **state)
+{
+    (void)state;
+    static const char *const FILES[][2] = {
+        {"a.gltf", "{\"asset\": {\"version\": \"2.0\"}, \"extensionsRequired\": [\"E\\u001b[31m\"]}"},
+        {"a.obj", "mtllib E\033[31m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 x\n"},
+        {"a.ply", "ply\nformat E\033[31m 1.0\n"}};
+    for (int i = 0; i < 3; i++) {
+        program_run run = RUN(QUICK, "-o", "a.exr", write_text(FILES[i][0], FILES[i][1]));
+        expect_exit(&run, 1);
+        expect_said(&run, "E?[31m");
+        assert_null(strchr(run.err, '\033'));
+        program_run_reset(&run);
+    }
+}
+
 static void test_no_scenes(void **state)
 {
     (void)state;
@@ -301,10 +318,15 @@ static void test_more_than_fits(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        TEST_IN_FOLDER(test_no_scenes),      TEST_IN_FOLDER(test_byte_order_mark_and_line_ends),
-        TEST_IN_FOLDER(test_long_lines),     TEST_IN_FOLDER(test_includes),
-        TEST_IN_FOLDER(test_closed_files),   TEST_IN_FOLDER(test_ply_files),
-        TEST_IN_FOLDER(test_pictures),       TEST_IN_FOLDER(test_spectra),
+        TEST_IN_FOLDER(test_names_that_command_terminals),
+        TEST_IN_FOLDER(test_no_scenes),
+        TEST_IN_FOLDER(test_byte_order_mark_and_line_ends),
+        TEST_IN_FOLDER(test_long_lines),
+        TEST_IN_FOLDER(test_includes),
+        TEST_IN_FOLDER(test_closed_files),
+        TEST_IN_FOLDER(test_ply_files),
+        TEST_IN_FOLDER(test_pictures),
+        TEST_IN_FOLDER(test_spectra),
         TEST_IN_FOLDER(test_more_than_fits),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

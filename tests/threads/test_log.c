@@ -45,6 +45,9 @@ static void test_messages(void **state)
     assert_string_equal(h.message, "a line\nand another");
     log_message(log, AG_LOG_INFO, "%s", "\n");
     assert_string_equal(h.message, "");
+    /* what a terminal would obey, in ASCII and in UTF-8; other letters of two bytes stay */
+    log_message(log, AG_LOG_INFO, "%s", "a\033[31m\tb\x7f\xc2\x9b\xc2\xa0\xc3\xa9\nd\001\xc2");
+    assert_string_equal(h.message, "a?[31m b???\xc2\xa0\xc3\xa9\nd?\xc2");
     /* around the length up to which no memory is needed, and far beyond */
     static const int lengths[] = {510, 511, 512, 513, 4000};
     for (size_t i = 0; i < sizeof lengths / sizeof lengths[0]; i++) {
