@@ -115,6 +115,10 @@ static void test_progress_for_farms(void **state)
     expect_said(&run, "{\"written\": [\"a.8.exr\"], \"percent\": 100, ");
     expect_said(&run, "\"frame\": 8, \"frame_index\": 2, \"frame_count\": 2}\n");
     program_run_reset(&run);
+    /* a byte that is not UTF-8, and a surrogate, which is none either */
+    run = RUN(TINY, "--progress=json", "-o", "a\xff\"\xc3\xa9\xed\xa0\x80.exr", BOX);
+    expect_said(&run, "{\"written\": [\"a\\ufffd\\\"\xc3\xa9\\ufffd\\ufffd\\ufffd.exr\"]");
+    program_run_reset(&run);
     run = RUN(TINY, "--progress=off", "-o", "a.exr", BOX);
     assert_string_equal(run.err, "");
     program_run_reset(&run);
