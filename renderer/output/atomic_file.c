@@ -321,7 +321,9 @@ static ag_status begin(const run_context *run, const char *path, output *out, ch
         return failure(path, "", EISDIR, message, message_size);
     if (exists && !S_ISREG(status.st_mode)) {
         out->fd = open_special(run, resolved);
-        return out->fd >= 0 ? AG_OK : failure(path, "", errno, message, message_size);
+        const bool has_no_reader = out->fd < 0 && errno == ENXIO && S_ISFIFO(status.st_mode);
+        const char *what = has_no_reader ? "it is a pipe that nobody reads: " : "";
+        return out->fd >= 0 ? AG_OK : failure(path, what, errno, message, message_size);
     }
     if (!exists && errno != ENOENT && errno != ENOTDIR && errno != EACCES)
         return failure(path, "", errno, message, message_size);

@@ -57,8 +57,11 @@ ag_status guarded(ag_status failure, char *message, size_t message_size, Work &&
 }
 
 /* OpenImageIO's text where it has one. */
-[[noreturn]] void fail(const std::string &what, const std::string &reason)
+/* reason: OpenImageIO's, which has several lines where a library below it has failed, too. */
+[[noreturn]] void fail(const std::string &what, std::string reason)
 {
+    for (size_t at = reason.find('\n'); at != std::string::npos; at = reason.find('\n', at))
+        reason.replace(at, 1, "; ");
     throw std::runtime_error(reason.empty() ? what : what + ": " + reason);
 }
 

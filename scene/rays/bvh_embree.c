@@ -293,9 +293,11 @@ static ag_status create_device(run_context *run, const char *isa, unsigned joine
     snprintf(settings, sizeof settings, "threads=%u,user_threads=%u,max_isa=%s", joiners, joiners, d->isa);
     d->embree = rtcNewDevice(settings);
     if (!d->embree) {
-        log_message(run->log, AG_LOG_ERROR, "Embree: no device for \"%s\" (error %d)", settings,
-                    (int)rtcGetDeviceError(NULL));
+        const enum RTCError error = rtcGetDeviceError(NULL);
         free(d);
+        if (error == RTC_ERROR_OUT_OF_MEMORY)
+            return AG_ERROR_MEMORY;
+        log_message(run->log, AG_LOG_ERROR, "Embree: no device for \"%s\" (error %d)", settings, (int)error);
         return AG_ERROR_RAY_TRACING;
     }
     order_before_library(&embree_threads);

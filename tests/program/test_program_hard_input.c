@@ -243,12 +243,16 @@ static void test_pictures(void **state)
                            "\0\0\0\0IDAT\0\0\0\0\0\0\0\0IEND\0\0\0\0";
     enum { IHDR = 12, IHDR_SIZE = 17, IDAT = 37, IEND = 49 };
     static const int CHUNKS[3][2] = {{IHDR, IHDR_SIZE}, {IDAT, 4}, {IEND, 4}};
-    for (int i = 0; i < 3; i++) {
-        unsigned long sum = crc32(0, huge + CHUNKS[i][0], (unsigned)CHUNKS[i][1]);
-        for (int k = 0; k < 4; k++)
-            huge[CHUNKS[i][0] + CHUNKS[i][1] + k] = (unsigned char)(sum >> (24 - 8 * k));
+    for (int size = 0; size < 2; size++) { /* then 8 x 8, without data */
+        for (int k = 0; k < 8 && size == 1; k++)
+            huge[IHDR + 4 + k] = k % 4 == 3 ? 8 : 0;
+        for (int i = 0; i < 3; i++) {
+            unsigned long sum = crc32(0, huge + CHUNKS[i][0], (unsigned)CHUNKS[i][1]);
+            for (int k = 0; k < 4; k++)
+                huge[CHUNKS[i][0] + CHUNKS[i][1] + k] = (unsigned char)(sum >> (24 - 8 * k));
+        }
+        write_bytes(size == 0 ? "huge.png" : "bare.png", huge, sizeof huge - 1);
     }
-    write_bytes("huge.png", huge, sizeof huge - 1);
     write_bytes("garbage.exr", "\x76\x2f\x31\x01 and so on", 14);
     write_text("garbage.hdr", "this is no picture");
     assert_int_equal(mkdir(in_folder("folder.png"), 0755), 0);
@@ -266,6 +270,13 @@ static void test_pictures(void **state)
                  CASES[i][0]);
         expect_refused(write_text("texture.pbrt", text), "texture.pbrt:3:35: error: ", CASES[i][1]);
     }
+    /* the library's reasons are one line */
+    program_run run =
+        RUN(QUICK, "-o", "a.exr",
+            write_text("light.pbrt", BEGIN "LightSource \"infinite\" \"string filename\" \"bare.png\"\n"));
+    expect_exit(&run, 1);
+    expect_said(&run, "OpenImageIO cannot decode it: PNG read error: Not enough image data; PNG");
+    program_run_reset(&run);
 }
 
 static void test_spectra(void **state)

@@ -4,6 +4,7 @@
  * Flow: tests of the whole program. Threads: the program's. */
 #define _GNU_SOURCE
 #include "fixtures/program_picture.h"
+#include "fixtures/sanitizer.h"
 
 #define SPHERE PROGRAM_SCENES "sphere.pbrt"
 #define ROOM   PROGRAM_SCENES "glass_and_metal.pbrt"
@@ -328,7 +329,7 @@ static void test_pipe_as_output(void **state)
     program_process process = program_start(&usual, ARGUMENTS(QUICK, "--progress=json", "-o", "pipe.exr", SPHERE));
     program_wait_for(&process, "'pipe.exr' is a pipe");
     assert_int_equal(kill(process.id, SIGTERM), 0);
-    expect_end(program_finish(&process), 3, "cannot write 'pipe.exr'");
+    expect_end(program_finish(&process), 3, "cannot write 'pipe.exr': it is a pipe that nobody reads");
 
     /* a reader that reads nothing: more than a pipe holds */
     process = program_start(&usual, ARGUMENTS(QUICK, "--size=200x200", "--progress=json", "-o", "pipe.exr", SPHERE));
@@ -414,6 +415,30 @@ static void test_few_threads(void **state)
     }
 }
 
+/* Too little memory is called that, by whichever library it is that finds none. With the least limits the loader ends
+ * the program, with its code 127. */
+static void test_small_address_space(void **state)
+{
+    (void)state;
+    if (IS_SANITIZED) {
+        print_message("SKIPPED: sanitizers reserve more addresses than the limits allow\n");
+        return;
+    }
+    for (int kib = 40000; kib <= 400000; kib += 20000) {
+        char command[512];
+        snprintf(command, sizeof command,
+                 "cd '%s' && ulimit -v %d && exec '%s' -q " SHELL_QUICK "-o a.exr " SPHERE " 2>said", folder, kib,
+                 program_path());
+        const int how = system(command), code = WIFEXITED(how) ? WEXITSTATUS(how) : -1;
+        size_t size;
+        char *said = (char *)read_bytes(in_folder("said"), &size);
+        const bool is_code = memmem(said, size, "(error", 6) != NULL;
+        if ((code != 0 && code != 3 && code != 127) || is_code)
+            fail_msg("%d KiB: exit code %d; it said: %.*s", kib, code, (int)size, said);
+        free(said);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -432,6 +457,7 @@ int main(void)
         TEST_IN_FOLDER(test_small_stack),
         TEST_IN_FOLDER(test_signal_on_small_stack),
         TEST_IN_FOLDER(test_few_threads),
+        TEST_IN_FOLDER(test_small_address_space),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
