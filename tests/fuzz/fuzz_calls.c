@@ -154,7 +154,8 @@ static size_t parameters(host *h, int set, const ag_parameter **out)
                  {"width", AG_PARAMETER_FLOAT, 1},         {"levels", AG_PARAMETER_INTEGER, 1},
                  {"fov", AG_PARAMETER_FLOAT, 1},           {"shutterclose", AG_PARAMETER_FLOAT, 1},
                  {"sigma_a", AG_PARAMETER_SPECTRUM, 4},    {"twosided", AG_PARAMETER_BOOL, 1},
-                 {"type", AG_PARAMETER_STRING, 1},         {"iso", AG_PARAMETER_FLOAT, 1}};
+                 {"type", AG_PARAMETER_STRING, 1},         {"iso", AG_PARAMETER_FLOAT, 1},
+                 {"motionsteps", AG_PARAMETER_INTEGER, 1}};
     const size_t count = choose(h, PARAMETERS + 1);
     memset(h->parameters[set], 0, sizeof h->parameters[set]);
     for (size_t i = 0; i < count; i++) {

@@ -71,6 +71,15 @@ static ag_status subdivide(const pbrt_mesh *control, size_t triangle_count, int 
     return status;
 }
 
+/* Whether all sets together have no more triangles than the finest mesh may have. */
+static bool is_in_reach(size_t triangle_count, int64_t levels, uint32_t motion_segments)
+{
+    size_t most = LOOP_MAX_TRIANGLES / (motion_segments + 1);
+    for (int64_t i = 0; i < levels && most > 0; i++)
+        most /= 4;
+    return motion_segments == 0 || triangle_count <= most; /* of one set loop_subdivide tells */
+}
+
 ag_status pbrt_loop_subdivision(pbrt_parser *parser, parameter_list *list)
 {
     int64_t levels = 3;
@@ -83,6 +92,12 @@ ag_status pbrt_loop_subdivision(pbrt_parser *parser, parameter_list *list)
         return pbrt_refuse(parser, list, "levels", "\"levels\" should be 0 or above");
     AG_TRY(pbrt_read_mesh_arrays(parser, list, 3, &control, &index_count));
     parameter_list_warn_unused(list, parser->log);
+    if (!is_in_reach(index_count / 3, levels, control.motion_segments)) {
+        free(control.indices);
+        return pbrt_refuse(parser, list, "levels",
+                           "%zu triangles subdivided %lld times, in each of %u motion steps, are more than %zu",
+                           index_count / 3, (long long)levels, control.motion_segments + 1, LOOP_MAX_TRIANGLES);
+    }
     char error[192] = "";
     pbrt_mesh fine;
     ag_status status =
