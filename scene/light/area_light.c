@@ -1,7 +1,9 @@
-/* area_light.c: a shape that shines, by its own sampling, by the cone of a sphere, or by a radiance map.
+/* area_light.c: a shape that shines, by its own sampling, by the cone of a sphere, by the solid angles of a mesh's
+ * triangles, or by a radiance map.
  * Rests on: Pharr, Jakob, Humphreys, "Physically Based Rendering", 4th ed., 2023, 12.4 and 6.2.4 (the cone of a
  * sphere). Threads: read-only. */
 #include "light/light_type.h"
+#include "light/mesh_light.h"
 #include "light/radiance_map.h"
 #include "math/sampling.h"
 #include "scene.h"
@@ -99,18 +101,47 @@ static surface_sample sample_sphere_cone(const shape *lamp, vec3 point, vec2 u, 
     return at;
 }
 
-/* Whether direct light is sampled by the lamp's radiance map too: where its density is known at a hit. */
-static bool is_sampled_by_map(const light *l, const shape *lamp) { return l->as.area.map && lamp->kind == SHAPE_MESH; }
+/* How a point on the lamp is sampled from a lit point. */
+typedef enum lamp_sampling {
+    BY_CONE,         /* uniform in solid angle; a whole sphere seen from outside */
+    BY_SOLID_ANGLES, /* of a mesh's triangles */
+    BY_MAP,          /* by the radiance map of a mesh, which knows its density at a hit */
+    BY_AREA
+} lamp_sampling;
+
+/* *out_cone: one minus the cosine of the cone's half angle, with BY_CONE alone. */
+static lamp_sampling sampling_from(const light *l, const shape *lamp, vec3 point, float *out_cone)
+{
+    if (lamp->kind == SHAPE_MESH)
+        return l->as.area.map ? BY_MAP : BY_SOLID_ANGLES;
+    return sphere_cone(lamp, point, out_cone) ? BY_CONE : BY_AREA;
+}
+
+static float per_solid_angle(double density_by_area, float distance_squared, float cos_lamp)
+{
+    return (float)(density_by_area * (double)distance_squared / (double)cos_lamp);
+}
+
+static float pdf_of(mesh_light_density density, float distance_squared, float cos_lamp)
+{
+    return density.is_by_area ? per_solid_angle(density.value, distance_squared, cos_lamp) : (float)density.value;
+}
 
 static bool sample_from_point(const scene *s, const light *l, vec3 point, vec2 u, light_sample *out)
 {
     const shape *lamp = &s->shapes[l->as.area.shape_index];
     surface_sample at;
+    mesh_light_density mesh_density;
     float cone, density = 1.0f;
-    bool is_cone = sphere_cone(lamp, point, &cone);
-    if (is_sampled_by_map(l, lamp) && !radiance_map_sample(l->as.area.map, u, &u, &density))
+    lamp_sampling sampling = sampling_from(l, lamp, point, &cone);
+    if (sampling == BY_MAP && !radiance_map_sample(l->as.area.map, u, &u, &density))
         return false;
-    at = is_cone ? sample_sphere_cone(lamp, point, u, cone) : shape_sample_area(lamp, u);
+    if (sampling == BY_CONE)
+        at = sample_sphere_cone(lamp, point, u, cone);
+    else if (sampling != BY_SOLID_ANGLES)
+        at = shape_sample_area(lamp, u);
+    else if (!mesh_light_sample(lamp, l->as.area.two_sided, point, u, &at, &mesh_density))
+        return false;
     vec3 to_lamp = vec3_sub(at.position, point);
     float distance_squared = vec3_length_squared(to_lamp);
     if (!(distance_squared > 0.0f))
@@ -123,7 +154,11 @@ static bool sample_from_point(const scene *s, const light *l, vec3 point, vec2 u
     float cos_lamp = fabsf(vec3_dot(at.geometric_normal, out->direction));
     if (rgb_is_black(out->radiance) || cos_lamp <= 1e-6f)
         return false;
-    out->pdf_solid_angle = is_cone ? 1.0f / (2.0f * AG_PI * cone) : at.pdf_area * density * distance_squared / cos_lamp;
+    switch (sampling) {
+    case BY_CONE: out->pdf_solid_angle = 1.0f / (2.0f * AG_PI * cone); break;
+    case BY_SOLID_ANGLES: out->pdf_solid_angle = pdf_of(mesh_density, distance_squared, cos_lamp); break;
+    default: out->pdf_solid_angle = at.pdf_area * density * distance_squared / cos_lamp;
+    }
     out->shadow_target =
         vec3_add_scaled(at.position, vec3_face_forward(at.geometric_normal, vec3_negate(out->direction)), at.epsilon);
     out->is_delta = shape_is_invisible(lamp); /* then shadow rays alone find it */
@@ -135,15 +170,20 @@ static float pdf_from_point(const scene *s, const light *l, vec3 point, const su
     const shape *lamp = &s->shapes[l->as.area.shape_index];
     float cone;
     vec2 u;
-    if (sphere_cone(lamp, point, &cone))
+    lamp_sampling sampling = sampling_from(l, lamp, point, &cone);
+    if (sampling == BY_CONE)
         return 1.0f / (2.0f * AG_PI * cone);
     vec3 to_lamp = vec3_sub(hit->position, point);
     float distance_squared = vec3_length_squared(to_lamp);
     float cos_lamp = fabsf(vec3_dot(hit->geometric_normal, to_lamp)) / sqrtf(distance_squared);
-    float density = is_sampled_by_map(l, lamp) && shape_sample_inverse(lamp, hit, &u)
-                        ? radiance_map_density(l->as.area.map, u)
-                        : 1.0f;
-    return cos_lamp > 0.0f ? shape_pdf_area(lamp, hit->geometric_normal) * density * distance_squared / cos_lamp : 0.0f;
+    if (!(cos_lamp > 0.0f))
+        return 0.0f;
+    if (sampling == BY_SOLID_ANGLES)
+        return pdf_of(mesh_light_density_of(lamp, l->as.area.two_sided, point, hit->primitive_index), distance_squared,
+                      cos_lamp);
+    float density =
+        sampling == BY_MAP && shape_sample_inverse(lamp, hit, &u) ? radiance_map_density(l->as.area.map, u) : 1.0f;
+    return shape_pdf_area(lamp, hit->geometric_normal) * density * distance_squared / cos_lamp;
 }
 
 /* --- from the lamp --- */
@@ -185,12 +225,29 @@ static bool emission_numbers_of(const scene *s, const light *l, vec3 point, vec2
 {
     const shape *lamp = &s->shapes[l->as.area.shape_index];
     float density, cone;
-    if (sphere_cone(lamp, point, &cone) || (l->as.area.map && !is_sampled_by_map(l, lamp)))
-        return false; /* not by the numbers of the position */
+    mesh_light_density mesh_density;
+    surface_sample at;
+    vec2 on_map = u;
+    switch (sampling_from(l, lamp, point, &cone)) {
+    case BY_CONE: return false; /* not by the numbers of the position */
+    case BY_SOLID_ANGLES:
+        if (!mesh_light_sample(lamp, l->as.area.two_sided, point, u, &at, &mesh_density))
+            return false;
+        surface_hit hit = {.position = at.position, .primitive_index = at.primitive_index};
+        shape_sample_inverse(lamp, &hit, &u);
+        break;
+    case BY_MAP:
+        if (!radiance_map_sample(l->as.area.map, u, &on_map, &density))
+            return false;
+        at = shape_sample_area(lamp, on_map);
+        break;
+    default:
+        if (l->as.area.map)
+            return false;
+        at = shape_sample_area(lamp, u);
+    }
     in_out->position = u;
-    if (l->as.area.map && !radiance_map_sample(l->as.area.map, u, &u, &density))
-        return false;
-    vec3 n = shape_sample_area(lamp, u).geometric_normal, direction = vec3_negate(towards->direction);
+    vec3 n = at.geometric_normal, direction = vec3_negate(towards->direction);
     if (l->as.area.two_sided) {
         bool is_behind = vec3_dot(n, direction) < 0.0f;
         in_out->part = float_below_one(0.5f * in_out->part + (is_behind ? 0.0f : 0.5f));

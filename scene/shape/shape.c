@@ -183,25 +183,34 @@ ag_status shape_commit(shape *s)
 
 static const vec3 NOWHERE = {0.0f, 0.0f, 0.0f};
 
-/* Picks a triangle by area, then reuses the random number's rest. */
-static surface_sample mesh_sample_area(const shape *s, vec2 u)
+surface_sample shape_sample_triangle(const shape *s, uint32_t triangle, vec2 barycentrics)
+{
+    surface_hit hit;
+    shape_surface_at(s, triangle, barycentrics.x, barycentrics.y, NOWHERE, NOWHERE, 0.0f, &hit);
+    return (surface_sample){hit.position, hit.geometric_normal, 1.0f / s->area, hit.epsilon, triangle, barycentrics};
+}
+
+uint32_t shape_pick_triangle(const shape *s, float *in_out_u)
 {
     const mesh *m = &s->as.mesh;
     uint32_t low = 0, high = m->triangle_count - 1;
     while (low < high) {
         uint32_t middle = low + (high - low) / 2;
-        if (m->area_cdf[middle] > u.x)
+        if (m->area_cdf[middle] > *in_out_u)
             high = middle;
         else
             low = middle + 1;
     }
     float before = low > 0 ? m->area_cdf[low - 1] : 0.0f, share = m->area_cdf[low] - before;
     if (share > 0.0f)
-        u.x = float_below_one(fmaxf((u.x - before) / share, 0.0f));
-    vec2 b = sample_triangle(u);
-    surface_hit hit;
-    shape_surface_at(s, low, b.x, b.y, NOWHERE, NOWHERE, 0.0f, &hit);
-    return (surface_sample){hit.position, hit.geometric_normal, 1.0f / s->area, hit.epsilon, low, b};
+        *in_out_u = float_below_one(fmaxf((*in_out_u - before) / share, 0.0f));
+    return low;
+}
+
+static surface_sample mesh_sample_area(const shape *s, vec2 u)
+{
+    uint32_t triangle = shape_pick_triangle(s, &u.x);
+    return shape_sample_triangle(s, triangle, sample_triangle(u));
 }
 
 bool shape_sample_inverse(const shape *s, const surface_hit *hit, vec2 *out_u)

@@ -125,6 +125,10 @@ uint64_t shape_hash_borrowed(const shape *s);
 ag_status shape_copy(const shape *s, const transform *map, shape *out_copy);
 
 surface_sample shape_sample_area(const shape *s, vec2 u);
+/* Of a lamp that is a mesh: returns a triangle picked by area; *in_out_u becomes a number as random as it was. */
+uint32_t shape_pick_triangle(const shape *s, float *in_out_u);
+/* Of such a mesh: the sample at a point of a triangle, by the weights of its second and third corner. */
+surface_sample shape_sample_triangle(const shape *s, uint32_t triangle, vec2 barycentrics);
 /* The whole hit at a sampled point; distance is 0. */
 void shape_sample_surface(const shape *s, uint32_t shape_index, const surface_sample *sample, surface_hit *out_hit);
 /* Back from a point to the random numbers that pick it. false for shapes that are no mesh. */

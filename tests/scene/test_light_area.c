@@ -144,6 +144,63 @@ static void meshes(void **state)
                origin, 0.0);
 }
 
+/* What a sample of a lamp weighs on a surface that faces up: radiance times cosine over density. Beside a lamp none is
+ * far above the mean, which would be a bright speck in the picture. largest: over the mean. */
+static void check_weights(const char *world, vec3 point, double irradiance, double largest)
+{
+    test_run r;
+    test_run_init(&r, 1);
+    scene *s = test_scene_create(&r, world);
+    rng random = test_random(4);
+    double sum = 0.0, square = 0.0, most = 0.0;
+    for (int i = 0; i < SAMPLES; i++) {
+        light_sample at;
+        if (!light_sample_from_point(s, &s->lights[0], point, rng_vec2(&random), &at))
+            continue;
+        double weight = fmax((double)at.direction.z, 0.0) / (double)at.pdf_solid_angle;
+        sum += weight / SAMPLES, square += weight * weight / SAMPLES;
+        most = fmax(most, weight);
+    }
+    assert_close(sum, irradiance, 5.0 * sqrt(fmax(square - sum * sum, 0.0) / SAMPLES) + 1e-4 * irradiance);
+    assert_true(most <= largest * sum);
+    scene_destroy(s);
+    test_run_reset(&r);
+}
+
+/* The form factor of a rectangle a by b at height 1, from below one of its corners, times pi. */
+static double corner_irradiance(double a, double b)
+{
+    double x = sqrt(1.0 + a * a), y = sqrt(1.0 + b * b);
+    return 0.5 * (a / x * atan(b / x) + b / y * atan(a / y));
+}
+
+static void near_and_turned_lamps_give_even_samples(void **state)
+{
+    (void)state;
+    /* 5 cm below a square of 2 m */
+    const double closely = 4.0 * corner_irradiance(20.0, 20.0);
+    vec3 below = {0.0f, 0.0f, 0.95f};
+    check_weights(LAMP "Shape \"trianglemesh\" \"integer indices\" [0 2 1 0 3 2] \"point3 P\" [-1 -1 1  1 -1 1  1 1 1 "
+                       "-1 1 1]",
+                  below, closely, 2.5);
+    /* as a mesh of many triangles, one of which is picked by area */
+    char text[2048], *end = text + sprintf(text, LAMP "Shape \"trianglemesh\" \"integer indices\" [");
+    for (int i = 0; i < 9; i++)
+        end += sprintf(end, "%d %d %d %d %d %d ", i, i + 10, i + 1, i + 10, i + 11, i + 1);
+    end += sprintf(end, "] \"point3 P\" [");
+    for (int i = 0; i < 20; i++)
+        end += sprintf(end, "%g %d 1 ", (i % 10) / 4.5 - 1.0, 2 * (i / 10) - 1);
+    sprintf(end, "]");
+    check_weights(text, below, closely, 20.0);
+    /* a box above, 1 m wide and high, of which the lower side alone shines down here */
+    check_weights(
+        "Translate 0 0 1.5 " LAMP
+        "Shape \"trianglemesh\" \"integer indices\" [0 3 1 0 2 3 4 5 7 4 7 6 0 1 5 0 5 4 2 7 3 2 6 7 0 6 2 0 4 "
+        "6 1 7 5 1 3 7]\n"
+        "\"point3 P\" [-.5 -.5 -.5 .5 -.5 -.5 -.5 .5 -.5 .5 .5 -.5 -.5 -.5 .5 .5 -.5 .5 -.5 .5 .5 .5 .5 .5]",
+        (vec3){0.0f, 0.0f, 0.0f}, 4.0 * corner_irradiance(0.5, 0.5), 1.5);
+}
+
 static void disks(void **state)
 {
     (void)state;
@@ -179,6 +236,7 @@ int main(void)
         cmocka_unit_test(a_sphere_from_outside_and_inside),
         cmocka_unit_test(an_ellipsoid_from_outside_and_inside),
         cmocka_unit_test(meshes),
+        cmocka_unit_test(near_and_turned_lamps_give_even_samples),
         cmocka_unit_test(disks),
         cmocka_unit_test(a_lamp_is_dark_from_behind),
     };

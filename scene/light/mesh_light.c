@@ -1,0 +1,96 @@
+/* mesh_light.c: see mesh_light.h. */
+#include "light/mesh_light.h"
+
+#include "math/sampling.h"
+#include "math/spherical_triangle.h"
+
+/* Meshes of more triangles are not looked at whole for each sample. */
+enum { WHOLE_MAX = 16 };
+
+/* Outside of these a triangle is sampled by area: what is small has nearly one distance and one angle everywhere, and
+ * half a sphere of directions is beyond the precision of the formulas. */
+static const double TURNS_LEAST = 1e-4, TURNS_MOST = 0.98;
+static const double TWO_PI = 6.283185307179586477;
+
+static spherical_triangle triangle_seen(const mesh *m, uint32_t triangle, vec3 point)
+{
+    const uint32_t *index = m->indices + 3 * (size_t)triangle;
+    return spherical_triangle_seen(point, m->positions[index[0]], m->positions[index[1]], m->positions[index[2]]);
+}
+
+/* Returns the solid angle over 2 pi of what may shine towards the point. Where vertex normals decide which side
+ * shines, both are taken for it. */
+static double shining_turns(const shape *lamp, bool is_two_sided, const spherical_triangle *t)
+{
+    bool is_dark = !is_two_sided && !lamp->as.mesh.normals && t->is_from_back != lamp->flip_normal;
+    return is_dark ? 0.0 : t->turns;
+}
+
+static mesh_light_density density_within(const spherical_triangle *t, double probability)
+{
+    if (t->turns >= TURNS_LEAST && t->turns <= TURNS_MOST)
+        return (mesh_light_density){probability / (TWO_PI * t->turns), false};
+    double area = spherical_triangle_area(t);
+    return (mesh_light_density){area > 0.0 ? probability / area : 0.0, true};
+}
+
+static float area_share(const mesh *m, uint32_t triangle)
+{
+    return m->area_cdf[triangle] - (triangle > 0 ? m->area_cdf[triangle - 1] : 0.0f);
+}
+
+bool mesh_light_sample(const shape *lamp, bool is_two_sided, vec3 point, vec2 u, surface_sample *out_sample,
+                       mesh_light_density *out_density)
+{
+    const mesh *m = &lamp->as.mesh;
+    uint32_t picked = 0;
+    double probability;
+    spherical_triangle t;
+    if (m->triangle_count <= WHOLE_MAX) {
+        spherical_triangle all[WHOLE_MAX];
+        double turns[WHOLE_MAX], sum = 0.0;
+        for (uint32_t i = 0; i < m->triangle_count; i++) {
+            all[i] = triangle_seen(m, i, point);
+            sum += turns[i] = shining_turns(lamp, is_two_sided, &all[i]);
+        }
+        if (!(sum > 0.0))
+            return false;
+        double left = (double)u.x * sum;
+        for (uint32_t i = 0; i < m->triangle_count; i++) {
+            if (!(turns[i] > 0.0))
+                continue;
+            picked = i;
+            if (left < turns[i])
+                break;
+            left -= turns[i];
+        }
+        t = all[picked];
+        u.x = float_below_one((float)fmin(left / turns[picked], 1.0));
+        probability = turns[picked] / sum;
+    } else {
+        picked = shape_pick_triangle(lamp, &u.x);
+        t = triangle_seen(m, picked, point);
+        probability = (double)area_share(m, picked);
+    }
+    *out_density = density_within(&t, probability);
+    if (!(out_density->value > 0.0))
+        return false;
+    *out_sample = shape_sample_triangle(
+        lamp, picked, out_density->is_by_area ? sample_triangle(u) : spherical_triangle_sample(&t, u));
+    return true;
+}
+
+mesh_light_density mesh_light_density_of(const shape *lamp, bool is_two_sided, vec3 point, uint32_t triangle)
+{
+    const mesh *m = &lamp->as.mesh;
+    spherical_triangle t = triangle_seen(m, triangle, point);
+    if (m->triangle_count > WHOLE_MAX)
+        return density_within(&t, (double)area_share(m, triangle));
+    double sum = 0.0;
+    for (uint32_t i = 0; i < m->triangle_count; i++) {
+        spherical_triangle other = triangle_seen(m, i, point);
+        sum += shining_turns(lamp, is_two_sided, &other);
+    }
+    double turns = shining_turns(lamp, is_two_sided, &t);
+    return turns > 0.0 ? density_within(&t, turns / sum) : (mesh_light_density){0.0, true};
+}
