@@ -154,7 +154,6 @@ typedef struct picture_run {
     ag_context *context;
     options *o;
     int frame; /* -1: there are no frames */
-    progress *told;
     char default_name[NAME_SIZE];
     bool is_skipped;   /* for --no-clobber */
     bool lacks_memory; /* more than there is, or than --memory allows */
@@ -191,18 +190,14 @@ static ag_status render_scene(picture_run *r, const ag_scene *scene, passes_resu
     AG_TRY(predict(r->context, o, scene, &settings, &r->lacks_memory));
     if (o->dry_run)
         return AG_OK;
-    AG_TRY(passes_render(r->context, o, scene, &settings, out_result));
-    if (!o->photons_only)
-        progress_tell_written(r->told, o->outfiles, o->outfile_count);
-    return AG_OK;
+    return passes_render(r->context, o, scene, &settings, out_result);
 }
 
 /* Writes the statistics of a picture that was made, if only in part, or that lacked memory. */
 static ag_status tell_statistics(picture_run *r, ag_status status, const passes_result *result)
 {
     const options *o = r->o;
-    const bool lacks_file = status == AG_ERROR_OUTPUT && result->samples.most > 0; /* and the others are written */
-    const bool is_made = status == AG_OK || result->is_partial || lacks_file;
+    const bool is_made = status == AG_OK || result->is_partial || result->is_complete;
     if (r->is_skipped)
         return status;
     if (is_made && !o->dry_run && o->verbosity >= 1) {
@@ -221,13 +216,13 @@ static ag_status tell_statistics(picture_run *r, ag_status status, const passes_
 }
 
 /* Renders a picture; frame: -1 where there are no frames. */
-static ag_status run(ag_context *context, options *o, int frame, progress *told, passes_result *out_result)
+static ag_status run(ag_context *context, options *o, int frame, passes_result *out_result)
 {
     o->begun = passes_seconds();
     if (o->no_clobber && is_there(o))
         return AG_OK;
     AG_TRY(check_options(context, o));
-    picture_run r = {.context = context, .o = o, .frame = frame, .told = told};
+    picture_run r = {.context = context, .o = o, .frame = frame};
     ag_scene *scene = NULL;
     ag_scene_settings asked = o->asked;
     asked.definitions = o->definitions;
@@ -278,7 +273,7 @@ static ag_status run_in_context(options *o, int frame, progress *told, ag_contex
     if (o->memory_limit > 0)
         memory_limit_set(o->memory_limit, false);
     passes_result result = {0};
-    status = o->lists_displays ? list_displays(context) : run(context, o, frame, told, &result);
+    status = o->lists_displays ? list_displays(context) : run(context, o, frame, &result);
     progress_finish(told);
     tell_end(o, status, &result);
     signals_release();

@@ -34,7 +34,8 @@ typedef struct passes {
     double deadline;            /* in seconds of passes_seconds() */
     double begun;               /* when rendering began, in seconds of passes_seconds() */
     int final;                  /* samples per pixel in the end */
-    bool is_written;            /* the picture is; what is written after it is another view */
+    bool is_view;               /* what is written is another view of a picture that was complete before */
+    bool *is_written;           /* of each outfile, as by picture_files_write; owned */
     ag_status unwritten;        /* AG_OK, or AG_ERROR_OUTPUT: a file is missing in the end, which has been told */
     ag_end cut;                 /* AG_END_TIME_LIMIT, AG_END_KEPT: it ends in order with fewer; else AG_END_NONE */
 } passes;
@@ -50,7 +51,7 @@ double passes_seconds(void)
 
 static ag_status write_pictures(const passes *p, const ag_film *film, bool is_last)
 {
-    return picture_files_write(p->context, p->o, film, is_last, p->is_written);
+    return picture_files_write(p->context, p->o, film, is_last, p->is_view, p->is_written);
 }
 
 /* Notes that a file could not be written, for the end of the run: the other files are written all the same. */
@@ -236,6 +237,9 @@ static ag_status run_passes(passes *p)
 static ag_status begin(passes *p, const ag_scene *scene, const ag_render_settings *settings)
 {
     const options *o = p->o;
+    p->is_written = calloc((size_t)o->outfile_count + 1, sizeof *p->is_written);
+    if (!p->is_written)
+        return AG_ERROR_MEMORY;
     if (o->checkpoint_seconds > 0.0 || o->resume) {
         p->checkpoint = picture_mark_checkpoint(o->outfiles[0]);
         if (!p->checkpoint)
@@ -308,12 +312,14 @@ static ag_status show(passes *p, ag_film *film, const ag_render_settings *settin
 {
     const options *o = p->o;
     const bool has_picture = !o->photons_only && (!result->is_partial || result->samples.most > 0);
+    ag_status written = AG_OK;
     if (settings->denoise && has_picture) {
         memory_limit_lift(); /* the prediction does not know what the denoiser takes */
         AG_TRY(ag_film_denoise(p->context, film));
     }
     if (has_picture) {
-        AG_TRY(note_unwritten(p, write_pictures(p, film, !result->is_partial && failed == AG_OK)));
+        written = write_pictures(p, film, !result->is_partial && failed == AG_OK);
+        AG_TRY(note_unwritten(p, written));
         progress_leave_film(o->told, true); /* what is said from here on stands below */
     }
     if (failed != AG_OK) {
@@ -321,7 +327,7 @@ static ag_status show(passes *p, ag_film *film, const ag_render_settings *settin
                 result->samples.mean, p->final);
         return failed;
     }
-    if (p->checkpoint && !result->is_partial && p->cut == AG_END_NONE && p->unwritten == AG_OK)
+    if (p->checkpoint && !result->is_partial && p->cut == AG_END_NONE && written == AG_OK)
         unlink(p->checkpoint); /* it has served */
     if (p->cut != AG_END_NONE && o->verbosity >= 0)
         fprintf(stderr, "afterglow: %s: the picture has %.4g of %d samples per pixel\n",
@@ -416,7 +422,7 @@ static ag_status write_and_wait(passes *p, const ag_render_settings *settings, p
             status = write_unwatched(p, settings, result, noise, out_films);
         }
         progress_leave_film(p->o->told, false);
-        p->is_written = status == AG_OK;
+        p->is_view = true; /* what may be written from here on */
     }
     if (status == AG_OK && stays)
         status = await_page(p);
@@ -462,6 +468,10 @@ ag_status passes_render(ag_context *context, const options *o, const ag_scene *s
     ag_film_destroy(films[0]);
     ag_film_destroy(films[1]);
     free(p.checkpoint);
+    if (p.is_written)
+        progress_tell_written(o->told, o->outfiles, p.is_written, o->outfile_count);
+    free(p.is_written);
+    out_result->is_complete = status == AG_OK && !out_result->is_partial;
     if (status == AG_OK)
         status = p.unwritten;
     return status == AG_OK && out_result->is_partial ? AG_CANCELLED : status;

@@ -20,15 +20,9 @@ static bool is_pipe(const char *outfile)
     return stat(outfile, &info) == 0 && S_ISFIFO(info.st_mode);
 }
 
-static ag_status write_one(ag_context *context, const options *o, int index, const ag_film *film, bool is_last,
-                           bool is_view)
+static ag_status write_one(ag_context *context, const options *o, int index, const ag_film *film, bool is_last)
 {
     const char *outfile = o->outfiles[index];
-    if ((!is_last || is_view) && !is_regular(outfile)) {
-        if (is_last && o->verbosity >= 0)
-            fprintf(stderr, "afterglow: '%s' is no regular file: it has the picture, and not the view\n", outfile);
-        return AG_OK;
-    }
     if (!is_last)
         AG_TRY(picture_mark_unfinished(outfile));
     if (is_pipe(outfile) && o->verbosity >= 0)
@@ -40,11 +34,20 @@ static ag_status write_one(ag_context *context, const options *o, int index, con
     return AG_OK;
 }
 
-ag_status picture_files_write(ag_context *context, const options *o, const ag_film *film, bool is_last, bool is_view)
+ag_status picture_files_write(ag_context *context, const options *o, const ag_film *film, bool is_last, bool is_view,
+                              bool *in_out_written)
 {
     ag_status status = AG_OK;
     for (int i = 0; i < o->outfile_count; i++) {
-        ag_status written = write_one(context, o, i, film, is_last, is_view);
+        if (!is_regular(o->outfiles[i]) && (!is_last || in_out_written[i])) {
+            if (is_view && o->verbosity >= 0)
+                fprintf(stderr, "afterglow: '%s' is no regular file: it has the picture, and not the view\n",
+                        o->outfiles[i]);
+            continue;
+        }
+        in_out_written[i] = false;
+        ag_status written = write_one(context, o, i, film, is_last);
+        in_out_written[i] = is_last && written == AG_OK;
         if (written != AG_OK && written != AG_ERROR_OUTPUT)
             return written;
         status = status == AG_OK ? written : status;

@@ -312,19 +312,26 @@ void progress_log(void *user, ag_log_level level, const char *message)
     end_writing();
 }
 
-void progress_tell_written(progress *p, const char *const *files, int file_count)
+void progress_tell_written(progress *p, const char *const *files, const bool *is_written, int file_count)
 {
+    const char *separator = "";
+    int written_count = 0;
     const bool is_json = p->style == PROGRESS_JSON;
     const double now = passes_seconds();
     char time[32];
     const bool is_for_people = p->style == PROGRESS_BAR || p->style == PROGRESS_PICTURE || p->style == PROGRESS_PLAIN;
-    if (file_count == 0 || (!is_json && !is_for_people))
+    for (int i = 0; i < file_count; i++)
+        written_count += is_written[i];
+    if (written_count == 0 || (!is_json && !is_for_people))
         return;
     begin_writing(p);
     clear_bar(p);
     fprintf(stderr, "%s", is_json ? "{\"written\": [" : "afterglow: wrote ");
     for (int i = 0; i < file_count; i++) {
-        fputs(i > 0 ? ", " : "", stderr);
+        if (!is_written[i])
+            continue;
+        fputs(separator, stderr);
+        separator = ", ";
         if (is_json)
             json_text_put(stderr, files[i]);
         else

@@ -47,8 +47,9 @@ void progress_init(progress *p, const options *o);
 /* Begins the next of frame_count pictures; progress is told of all of them together. */
 void progress_begin_frame(progress *p, int frame, int frame_count, int frame_number);
 
-/* Tells which files were written and how long this picture took, where progress is told at all. */
-void progress_tell_written(progress *p, const char *const *files, int file_count);
+/* Tells which of the files were written and how long this picture took, where progress is told at all; nothing where
+ * none was. */
+void progress_tell_written(progress *p, const char *const *files, const bool *is_written, int file_count);
 
 /* The progress callback of ag_context_settings, whose user is a progress. Messages go to standard error. */
 void progress_tell(void *user, ag_phase phase, double fraction);

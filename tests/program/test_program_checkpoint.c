@@ -85,6 +85,21 @@ static void test_ended_and_resumed(void **state)
     program_run_reset(&run);
 }
 
+/* Waits until a render with --progress=json has told that each pixel has samples, of some thousands. */
+static void wait_for_samples(const program_process *process)
+{
+    static const char TOLD[] = "\"phase\": \"render\", \"fraction\": ";
+    bool has_samples = false;
+    for (long i = 0; i < PROGRAM_PATIENCE_SECONDS * 1000L && !has_samples; i++) {
+        char *said = program_said(process->err);
+        for (const char *at = strstr(said, TOLD); at; at = strstr(at + 1, TOLD))
+            has_samples = has_samples || strtod(at + strlen(TOLD), NULL) >= 0.004;
+        free(said);
+        program_pause();
+    }
+    assert_true(has_samples);
+}
+
 /* A checkpoint is larger than a small picture in integers. Where there is no room for it the render goes on, and a
  * signal leaves the picture all the same. */
 static void test_no_room(void **state)
@@ -104,7 +119,7 @@ static void test_no_room(void **state)
 
     program_process process = program_start(&limited, ARGUMENTS("--integrator=path", LASTING, "--progress=json",
                                                                 "--checkpoint=1000", "--size=32x32", "-ob.png", BOX));
-    program_wait_for(&process, "\"phase\": \"render\"");
+    wait_for_samples(&process);
     assert_int_equal(kill(process.id, SIGTERM), 0);
     run = program_finish(&process);
     expect_exit(&run, 3);
@@ -112,6 +127,25 @@ static void test_no_room(void **state)
     expect_said(&run, "interrupted: the picture has ");
     program_run_reset(&run);
     expect_listing("a.png b.png b.png.afterglow-unfinished");
+}
+
+/* The checkpoint of a complete picture goes, whichever other file could not be written; without the picture it
+ * stays. */
+static void test_one_file_fails(void **state)
+{
+    (void)state;
+    static const char *const FILES[][2] = {{"-ofull.png", "-oa.exr"}, {"-oa.exr", "--dump-photons=full.png"}};
+    assert_int_equal(symlink("/dev/full", in_folder("full.png")), 0);
+    for (int i = 0; i < 2; i++) {
+        program_run run = RUN("--photons=3000", "--spp=256", "--size=32x32", "--gather-samples=2", "--checkpoint=0.01",
+                              FILES[i][0], FILES[i][1], BOX);
+        expect_exit(&run, 3);
+        expect_said(&run, "'full.png': No space left on device");
+        program_run_reset(&run);
+        expect_listing(i == 0 ? "a.exr full.png full.png.afterglow-checkpoint" : "a.exr full.png");
+        if (i == 0)
+            assert_int_equal(unlink(in_folder("full.png.afterglow-checkpoint")), 0);
+    }
 }
 
 /* Without a checkpoint there is nothing to go on from, and that is fine; what cannot be written is told beforehand. */
@@ -134,9 +168,8 @@ static void test_usage(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        TEST_IN_FOLDER(test_killed),
-        TEST_IN_FOLDER(test_ended_and_resumed),
-        TEST_IN_FOLDER(test_no_room),
+        TEST_IN_FOLDER(test_killed),  TEST_IN_FOLDER(test_ended_and_resumed),
+        TEST_IN_FOLDER(test_no_room), TEST_IN_FOLDER(test_one_file_fails),
         TEST_IN_FOLDER(test_usage),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

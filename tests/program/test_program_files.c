@@ -219,20 +219,42 @@ static void test_one_of_several_fails(void **state)
     (void)state;
     assert_int_equal(symlink("/dev/full", in_folder("full.png")), 0);
     assert_int_equal(symlink("/dev/full", in_folder("full.ply")), 0);
-    static const char *const ORDERS[][3] = {
-        {"-oa.exr", "-ofull.png", "-q"}, {"-ofull.png", "-oa.exr", "-q"}, {"-oa.exr", "-q", "--dump-photons=full.ply"}};
+    static const char *const ORDERS[][3] = {{"-oa.exr", "-ofull.png", "-t2"},
+                                            {"-ofull.png", "-oa.exr", "-t2"},
+                                            {"-oa.exr", "-t2", "--dump-photons=full.ply"}};
     for (int i = 0; i < 3; i++) {
         unlink(in_folder("a.exr"));
         unlink(in_folder("a.json"));
-        program_run run = RUN(QUICK, "--stats=a.json", ORDERS[i][0], ORDERS[i][1], ORDERS[i][2], SPHERE);
+        program_run run =
+            RUN(QUICK, "--progress=json", "--stats=a.json", ORDERS[i][0], ORDERS[i][1], ORDERS[i][2], SPHERE);
         expect_exit(&run, 3);
         expect_said(&run, i < 2 ? "'full.png': No space left on device" : "'full.ply': No space left on device");
+        expect_said(&run, "{\"written\": [\"a.exr\"], ");
         program_run_reset(&run);
         picture p = picture_read(in_folder("a.exr"));
         assert_int_equal(p.width, 8);
         picture_reset(&p);
         expect_listing("a.exr a.json full.ply full.png");
     }
+    program_run run = RUN(QUICK, "--progress=json", "-ofull.png", SPHERE);
+    expect_exit(&run, 3);
+    assert_null(strstr(run.err, "written"));
+    program_run_reset(&run);
+
+    const char *const photons[] = {"--photons=300",
+                                   "--photons-only",
+                                   "--dump-photons=full.ply",
+                                   "--photon-map=a.map",
+                                   "--stats=photons.json",
+                                   SPHERE,
+                                   NULL};
+    run = program_execute(NULL, photons);
+    expect_exit(&run, 3);
+    program_run_reset(&run);
+    json_t *stats = stats_read(in_folder("photons.json"));
+    assert_string_equal(json_string_value(stats_find(stats, "end.reason")), "photons");
+    json_decref(stats);
+    expect_listing("a.exr a.json a.map full.ply full.png photons.json");
 }
 
 /* An error before the picture is made leaves a file of its name as it was. */

@@ -248,9 +248,10 @@ static void tell_messages(void)
 static void tell_files(void)
 {
     static const char *const FILES[] = {"a.exr"};
+    static const bool IS_WRITTEN[] = {true};
     progress p = a_drawn_one();
     raise(SIGTSTP);
-    progress_tell_written(&p, FILES, 1);
+    progress_tell_written(&p, FILES, IS_WRITTEN, 1);
 }
 
 static void give_up(void)
