@@ -56,8 +56,7 @@ ag_status guarded(ag_status failure, char *message, size_t message_size, Work &&
     return failure;
 }
 
-/* OpenImageIO's text where it has one. */
-/* reason: OpenImageIO's, which has several lines where a library below it has failed, too. */
+/* reason: OpenImageIO's text, empty where it has none, of several lines where a library below it has failed, too. */
 [[noreturn]] void fail(const std::string &what, std::string reason)
 {
     for (size_t at = reason.find('\n'); at != std::string::npos; at = reason.find('\n', at))
