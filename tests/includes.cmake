@@ -93,7 +93,7 @@ set(cut
   "^renderer/film/.*->renderer/(integrator|output|cli)/"
   "^renderer/integrator/.*->renderer/(output|cli)/"
   "^renderer/output/.*->renderer/cli/"
-  "^renderer/cli/.*->threads/([a-rt-z]|s[^t]|st[^a])"
+  "^renderer/cli/.*->threads/([a-rtv-z]|s[^t]|st[^a]|u[^t])"
   "^scene/(surface|rays/ray|rays/rays)\\.h->scene/scene\\.h$"
   "^scene/(shape|texture)/[a-z_]+\\.h->scene/scene\\.h$"
   "^scene/scene\\.h->scene/rays/(bvh|rays|transmittance)\\.h$")

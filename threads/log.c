@@ -4,6 +4,8 @@
 #define _GNU_SOURCE
 #include "log.h"
 
+#include "utf8.h"
+
 #include <pthread.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -51,18 +53,21 @@ void log_speak(log_sink *log, ag_log_fn *fn) { log->fn = fn; }
 
 static bool is_silent(const log_sink *log) { return !log || !log->fn; }
 
-/* Names in a stranger's file may hold what a terminal obeys: control characters of ASCII, and those of Unicode, which
- * UTF-8 begins with 0xc2. Line ends stay, since messages have several lines. */
+static bool is_upper_control(unsigned char c) { return c >= 0x80 && c < 0xa0; }
+
+/* Names in a stranger's file may hold what a terminal obeys: control characters of ASCII and of Latin-1, these as bytes
+ * of their own or as Unicode's, which UTF-8 begins with 0xc2. Line ends stay, since messages have several lines. */
 static void replace_controls(char *message)
 {
-    for (unsigned char *c = (unsigned char *)message; *c; c++) {
-        const bool is_pair = c[0] == 0xc2 && c[1] >= 0x80 && c[1] < 0xa0;
+    int size;
+    for (unsigned char *c = (unsigned char *)message; *c; c += size > 0 ? size : 1) {
+        size = utf8_character_size((const char *)c);
         if (*c == '\t')
             *c = ' ';
-        else if ((*c < ' ' && *c != '\n') || *c == 0x7f || is_pair)
+        else if ((*c < ' ' && *c != '\n') || *c == 0x7f || (size == 0 && is_upper_control(*c)))
             *c = '?';
-        if (is_pair)
-            *++c = '?';
+        else if (size == 2 && c[0] == 0xc2 && is_upper_control(c[1]))
+            c[0] = c[1] = '?';
     }
 }
 

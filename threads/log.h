@@ -18,7 +18,8 @@ ag_log_fn *log_silence(log_sink *log);
 void log_speak(log_sink *log, ag_log_fn *fn);
 
 /* log NULL is fine: the message is dropped. Line ends at the end are cut, and control characters but line ends become
- * '?', tabs a space. fn must not log to the same sink. */
+ * '?', tabs a space. A byte from 0x80 to 0x9f that is no part of a character of UTF-8 is a control character, too. fn
+ * must not log to the same sink. */
 void log_message(log_sink *log, ag_log_level level, const char *format, ...) AG_PRINTF(3, 4);
 
 /* Logs as log_message does, but once for each distinct key in the life of the sink. Returns whether it spoke. */

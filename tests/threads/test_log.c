@@ -48,6 +48,14 @@ static void test_messages(void **state)
     /* what a terminal would obey, in ASCII and in UTF-8; other letters of two bytes stay */
     log_message(log, AG_LOG_INFO, "%s", "a\033[31m\tb\x7f\xc2\x9b\xc2\xa0\xc3\xa9\nd\001\xc2");
     assert_string_equal(h.message, "a?[31m b???\xc2\xa0\xc3\xa9\nd?\xc2");
+    /* a byte that is a control character where it is no part of a letter: alone, behind one, of one cut short or in
+     * more bytes than it needs */
+    log_message(log, AG_LOG_INFO, "%s",
+                "\x9b"
+                "31m\xc3\xbc\x9b\xe2\x82\xac\x80\xf0\x9f\x98\x80\x9f\xe2\x82\xe0\x82\x9b\xa0\xe9");
+    assert_string_equal(h.message, "?31m\xc3\xbc?\xe2\x82\xac?\xf0\x9f\x98\x80?\xe2?\xe0??\xa0\xe9");
+    log_message(log, AG_LOG_INFO, "%s", "\xc4\x9b\xe2\x80\x9c\xc2"); /* letters that end with such a byte */
+    assert_string_equal(h.message, "\xc4\x9b\xe2\x80\x9c\xc2");
     /* around the length up to which no memory is needed, and far beyond */
     static const int lengths[] = {510, 511, 512, 513, 4000};
     for (size_t i = 0; i < sizeof lengths / sizeof lengths[0]; i++) {
