@@ -44,14 +44,15 @@ void instance_transform_hit(const affine *world_from_object, struct surface_hit 
  * that read shapes. */
 struct surface_hit instance_hit_in_object(const struct scene *s, const struct surface_hit *hit);
 
-/* A point of the surface at the opening of the shutter, and the ratio of its area there to its area now (1 without
- * scaling, or bending; 0 where it has no area there, and the hit's own normal). The hit's own position where nothing
- * moves. */
+/* Where a point of a surface lies, in world space, when the shutter opens. */
 typedef struct surface_rest {
     vec3 position;
-    vec3 geometric_normal; /* unit, outside */
-    float area_ratio;
+    vec3 geometric_normal; /* unit, outside; where area_ratio is 0 the normal of the hit that it was found for */
+    float area_ratio;      /* the area around the point at the opening over that at the hit's time: 1 where nothing
+                            * scales or bends it, 0 where the surface has no area at the opening */
 } surface_rest;
+/* Returns where the point of a hit lies at the opening of the shutter; where nothing moves that is the hit's own
+ * position and geometric normal. */
 surface_rest surface_at_opening(const scene *s, const surface_hit *hit);
 
 #endif

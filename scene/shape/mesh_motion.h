@@ -27,22 +27,23 @@ typedef struct corner_values {
 /* Returns the positions or tangents (`values`, one of the mesh's arrays) of a triangle of a mesh whose vertices move,
  * at a time of the shutter, [0, 1]. */
 corner_values mesh_moving_values(const mesh *m, const vec3 *values, uint32_t triangle, float time);
-/* Returns the normals of its corners, which are unit, or zero where two steps' cancel. */
+/* Returns the normals of such a triangle's corners: unit, or zero where those of the steps before and after cancel. */
 corner_values mesh_moving_normals(const mesh *m, uint32_t triangle, float time);
 
-/* Returns the values of a mesh at rest. */
+/* Returns the positions, normals or tangents (`values`) of a triangle of a mesh at rest. */
 static inline corner_values mesh_still_values(const mesh *m, const vec3 *values, uint32_t triangle)
 {
     const uint32_t *index = m->indices + 3 * (size_t)triangle;
     return (corner_values){{values[index[0]], values[index[1]], values[index[2]]}};
 }
 
-/* Return those of any mesh. */
+/* Returns the positions or tangents (`values`) of a triangle of any mesh, at rest or not, at a time of the shutter. */
 static inline corner_values mesh_values_at(const mesh *m, const vec3 *values, uint32_t triangle, float time)
 {
     return m->motion_segments > 0 ? mesh_moving_values(m, values, triangle, time)
                                   : mesh_still_values(m, values, triangle);
 }
+/* Returns the normals of a triangle of any mesh that has normals, at a time of the shutter. */
 static inline corner_values mesh_normals_at(const mesh *m, uint32_t triangle, float time)
 {
     return m->motion_segments > 0 ? mesh_moving_normals(m, triangle, time) : mesh_still_values(m, m->normals, triangle);

@@ -125,9 +125,11 @@ uint64_t shape_hash_borrowed(const shape *s);
 ag_status shape_copy(const shape *s, const transform *map, shape *out_copy);
 
 surface_sample shape_sample_area(const shape *s, vec2 u);
-/* Of a lamp that is a mesh: returns a triangle picked by area; *in_out_u becomes a number as random as it was. */
+/* Picks a triangle of a mesh that is a lamp with a probability in proportion to its area, and returns its number.
+ * *in_out_u is uniform in [0, 1), and afterwards another such number, which does not depend on the triangle. */
 uint32_t shape_pick_triangle(const shape *s, float *in_out_u);
-/* Of such a mesh: the sample at a point of a triangle, by the weights of its second and third corner. */
+/* Returns the sample at a point of a triangle of such a mesh. barycentrics: the weights of its second and third corner.
+ */
 surface_sample shape_sample_triangle(const shape *s, uint32_t triangle, vec2 barycentrics);
 /* The whole hit at a sampled point; distance is 0. */
 void shape_sample_surface(const shape *s, uint32_t shape_index, const surface_sample *sample, surface_hit *out_hit);
@@ -152,7 +154,7 @@ bool shape_bare_point_at(const shape *s, uint32_t primitive_index, float u, floa
 /* Area of a shape in world space, m^2, at the opening of the shutter. For a power given in the file (pbrt's "power").
  */
 float shape_area(const shape *s);
-/* For the whole shutter. */
+/* Finds the box, in the shape's space, that holds the shape for as long as the shutter is open. */
 void shape_bounds(const shape *s, vec3 *out_min, vec3 *out_max);
 /* Fills in what scene_commit sets: centers, areas; area_cdf when it shines. Errors: AG_ERROR_MEMORY. */
 ag_status shape_commit(shape *s);
