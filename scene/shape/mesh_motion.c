@@ -48,17 +48,42 @@ float mesh_moving_reach(const mesh *m, uint32_t triangle, float time)
     return reach;
 }
 
-/* Twice the area, along the triangle's normal. */
-static void find_area(const corner_values *c, double out_area[3])
+/* In double precision: floats lose the area of a triangle that is a few thousand times as long as it is wide. */
+static void subtract(vec3 a, vec3 b, double out[3])
 {
-    const vec3 a = c->at[0], b = c->at[1], d = c->at[2];
-    const double e1[3] = {(double)b.x - a.x, (double)b.y - a.y, (double)b.z - a.z},
-                 e2[3] = {(double)d.x - a.x, (double)d.y - a.y, (double)d.z - a.z};
+    out[0] = (double)a.x - b.x, out[1] = (double)a.y - b.y, out[2] = (double)a.z - b.z;
+}
+
+static void cross(const double a[3], const double b[3], double out[3])
+{
     for (int i = 0; i < 3; i++)
-        out_area[i] = e1[(i + 1) % 3] * e2[(i + 2) % 3] - e1[(i + 2) % 3] * e2[(i + 1) % 3];
+        out[i] = a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3];
 }
 
 static double dot(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+/* Twice the area, along the triangle's normal. */
+static void find_area(const corner_values *c, double out_area[3])
+{
+    double e1[3], e2[3];
+    subtract(c->at[1], c->at[0], e1);
+    subtract(c->at[2], c->at[0], e2);
+    cross(e1, e2, out_area);
+}
+
+void find_barycentrics(const corner_values *positions, vec3 point, double *out_b1, double *out_b2)
+{
+    double e1[3], e2[3], from_p0[3], area[3], beside_e2[3], beside_e1[3];
+    subtract(positions->at[1], positions->at[0], e1);
+    subtract(positions->at[2], positions->at[0], e2);
+    subtract(point, positions->at[0], from_p0);
+    cross(e1, e2, area);
+    cross(from_p0, e2, beside_e2);
+    cross(e1, from_p0, beside_e1);
+    const double square = dot(area, area);
+    *out_b1 = square > 0.0 ? dot(beside_e2, area) / square : 0.0;
+    *out_b2 = square > 0.0 ? dot(beside_e1, area) / square : 0.0;
+}
 
 void mesh_move_to_opening(const mesh *m, uint32_t triangle, float time, vec3 *in_out_point, double in_out_area[3])
 {

@@ -54,15 +54,7 @@ static inline vec3 triangle_edge(const corner_values *c, int corner) { return ve
 
 /* Finds the barycentrics, of the second and the third corner, of a point in a triangle's plane; 0 where the triangle
  * has no area. */
-static inline void find_barycentrics(const corner_values *positions, vec3 point, double *out_b1, double *out_b2)
-{
-    vec3 e1 = triangle_edge(positions, 1), e2 = triangle_edge(positions, 2),
-         from_p0 = vec3_sub(point, positions->at[0]);
-    double a11 = vec3_dot(e1, e1), a12 = vec3_dot(e1, e2), a22 = vec3_dot(e2, e2);
-    double c1 = vec3_dot(from_p0, e1), c2 = vec3_dot(from_p0, e2), determinant = a11 * a22 - a12 * a12;
-    *out_b1 = determinant > 0.0 ? (c1 * a22 - c2 * a12) / determinant : 0.0;
-    *out_b2 = determinant > 0.0 ? (c2 * a11 - c1 * a12) / determinant : 0.0;
-}
+void find_barycentrics(const corner_values *positions, vec3 point, double *out_b1, double *out_b2);
 
 /* Moves a point of a triangle, as it is at a time of the shutter, to where it is at the opening; and an area vector
  * there, of either side, with it: zero where the triangle has no area at the opening. */

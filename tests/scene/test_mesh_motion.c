@@ -280,6 +280,36 @@ static void a_surface_is_found_where_it_was_at_first(void **state)
     test_run_reset(&r);
 }
 
+/* Of a triangle 4000 times as long as it is wide each point is found where it was, also where it is tilted. */
+static void a_sliver_is_found_where_it_was_at_first(void **state)
+{
+    (void)state;
+    static const vec3 SLIVERS[][3] = {{{0, 0, 0}, {2, 0, 0}, {2, 5e-4f, 0}},
+                                      {{0.3f, -0.2f, 0.1f}, {1.5f, 1.0f, 1.1f}, {1.50035f, 0.99965f, 1.1f}}};
+    for (int i = 0; i < 2; i++) {
+        vec3 positions[7] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+        uint32_t indices[3] = {0, 1, 2};
+        const mesh m = {
+            .vertex_count = 3, .triangle_count = 1, .motion_segments = 1, .positions = positions, .indices = indices};
+        memcpy(positions + 3, SLIVERS[i], sizeof SLIVERS[i]);
+        const vec3 e1 = vec3_sub(positions[4], positions[3]), e2 = vec3_sub(positions[5], positions[3]),
+                   normal = vec3_normalize(vec3_cross(e1, e2));
+        const float square = vec3_length_squared(vec3_cross(e1, e2)), tolerance = i == 0 ? 1e-5f : 2e-3f;
+        assert_close(vec3_length(e1) * vec3_length(e1) / sqrtf(square), 4000.0, 300.0);
+        for (int k = 0; k <= 10; k++)
+            for (int j = 0; j <= 10 - k; j++) {
+                const float b1 = 0.1f * (float)k, b2 = 0.1f * (float)j;
+                vec3 point = vec3_add_scaled(vec3_add_scaled(positions[3], e1, b1), e2, b2);
+                double area[3] = {(double)normal.x, (double)normal.y, (double)normal.z};
+                mesh_move_to_opening(&m, 0, 1.0f, &point, area);
+                expect_near(point, (vec3){b1, b2, 0.0f}, tolerance);
+                assert_close(area[0], 0.0, 1e-9);
+                assert_close(area[1], 0.0, 1e-9);
+                assert_relative(area[2], 1.0 / sqrt((double)square), 1e-3);
+            }
+    }
+}
+
 #define OPENING_AND_END "\"integer motionsteps\" 2 \"integer indices\" [0 1 2] \"point3 P\" "
 
 /* A triangle that has no area at the opening of the shutter takes no photons, and that is told. */
@@ -437,6 +467,7 @@ int main(void)
         cmocka_unit_test(alpha_is_that_of_the_time),
         cmocka_unit_test(starts_are_clean),
         cmocka_unit_test(a_surface_is_found_where_it_was_at_first),
+        cmocka_unit_test(a_sliver_is_found_where_it_was_at_first),
         cmocka_unit_test(what_opens_from_nothing_is_told),
         cmocka_unit_test(the_scene_knows_of_the_motion),
         cmocka_unit_test(subdivision_is_of_each_step),
