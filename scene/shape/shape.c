@@ -63,7 +63,8 @@ ag_status shape_copy(const shape *s, const transform *map, shape *out_copy)
 {
     shape copy = *s;
     if (s->kind != SHAPE_MESH) {
-        copy.as.quadric.world_from_object = transform_multiply(map, &s->as.quadric.world_from_object);
+        if (map)
+            copy.as.quadric.world_from_object = transform_multiply(map, &s->as.quadric.world_from_object);
         *out_copy = copy;
         return AG_OK;
     }
@@ -80,6 +81,9 @@ ag_status shape_copy(const shape *s, const transform *map, shape *out_copy)
         shape_reset(&copy);
         return AG_ERROR_MEMORY;
     }
+    *out_copy = copy;
+    if (!map)
+        return AG_OK;
     for (size_t i = 0; i < count; i++)
         m->positions[i] = transform_point(map, m->positions[i]);
     for (size_t i = 0; m->normals && i < count; i++) {
@@ -89,8 +93,7 @@ ag_status shape_copy(const shape *s, const transform *map, shape *out_copy)
     }
     for (size_t i = 0; m->tangents && i < count; i++)
         m->tangents[i] = transform_vector(map, m->tangents[i]);
-    copy.flip_normal = s->flip_normal != transform_swaps_handedness(map);
-    *out_copy = copy;
+    out_copy->flip_normal = s->flip_normal != transform_swaps_handedness(map);
     return AG_OK;
 }
 

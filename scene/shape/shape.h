@@ -120,8 +120,8 @@ bool shape_equals(const shape *s, const shape *other);
 ag_status shape_share_arrays(shape *from, shape *in_out_shape);
 /* Returns a hash of the arrays that a mesh borrows, to detect writes; 0: it borrows none, or they cannot be read. */
 uint64_t shape_hash_borrowed(const shape *s);
-/* Copies a shape that is no curves, before its commit, moved on by a map: its world space becomes another's. Errors:
- * AG_ERROR_MEMORY. */
+/* Copies a shape that is no curves, before its commit, moved on by a map: its world space becomes another's. NULL: it
+ * stays where it is, to the last bit. Errors: AG_ERROR_MEMORY. */
 ag_status shape_copy(const shape *s, const transform *map, shape *out_copy);
 
 surface_sample shape_sample_area(const shape *s, vec2 u);

@@ -115,6 +115,78 @@ static void all_ways_have_one_picture(void **state)
     }
 }
 
+enum { FIRST_TWO = 2 }; /* triangles */
+
+/* The square and a third triangle, far away, which has no area until later; its first `steps` steps alone. */
+static void render_lamp(const char *material, bool is_borrowed, bool is_editable, int32_t steps, int triangles,
+                        float *out_pixels, char said[4096])
+{
+    static const float INK[] = {2, 2, 2}, NOTHING[] = {0, 0, 0}, SHINES[] = {3, 2, 1};
+    static const int32_t THREE[] = {0, 1, 2, 0, 2, 3, 4, 5, 6};
+    enum { CORNERS_EACH = 7 };
+    static float p[3 * STEPS * CORNERS_EACH + 1];
+    const ag_parameter ink[] = {{"sigma_a", AG_PARAMETER_RGB, 3, .floats = INK},
+                                {"sigma_s", AG_PARAMETER_RGB, 3, .floats = NOTHING}},
+                       light = {"L", AG_PARAMETER_RGB, 3, .floats = SHINES};
+    desk d;
+    words w;
+    if (is_editable)
+        begin_lit_editable(&d);
+    else
+        begin_lit(&d);
+    add_floor(&d);
+    assert_int_equal(ag_scene_add_medium(d.made, "ink", "homogeneous", ink, 2), AG_OK);
+    assert_int_equal(ag_scene_add_material(d.made, "nothing", "interface", NULL, 0), AG_OK);
+    for (int k = 0; k < STEPS; k++) {
+        float *of_step = p + 3 * k * CORNERS_EACH;
+        memcpy(of_step, positions + 3 * k * VERTICES, 3 * VERTICES * sizeof *p);
+        for (int i = 0; i < 9; i++)
+            of_step[3 * VERTICES + i] = i % 3 == 2 ? 0.75f : 5.0f + (float)k * (float)(i % 4);
+    }
+    describe(is_borrowed, false, &w);
+    w.parameters[0] = (ag_parameter){"P", AG_PARAMETER_POINT3, (size_t)(3 * steps * CORNERS_EACH), .floats = p};
+    w.parameters[1] = (ag_parameter){"motionsteps", AG_PARAMETER_INTEGER, 1, .integers = &steps};
+    w.parameters[2] = (ag_parameter){"indices", AG_PARAMETER_INTEGER, (size_t)(3 * triangles), .integers = THREE};
+    w.shape.parameter_count = 3;
+    w.shape.is_light = true;
+    w.shape.light_parameters = &light;
+    w.shape.light_parameter_count = 1;
+    w.shape.material = material;
+    w.shape.medium_inside = material ? "ink" : NULL;
+    assert_int_equal(ag_scene_add_shape(d.made, &w.shape, NULL), AG_OK);
+    assert_int_equal(ag_scene_commit(d.made), AG_OK);
+    render(d.context, d.made, out_pixels);
+    memcpy(said, d.said, sizeof d.said);
+    end(&d);
+}
+
+/* A lamp stands as it does at first, without the triangle that has no area then; but the material "interface" does not
+ * shine, so that it deforms. */
+static void a_lamp_stands_still_where_it_has_a_surface(void **state)
+{
+    (void)state;
+    float still[COUNT], first[COUNT], other[COUNT];
+    char said[4096];
+    make_arrays(0.05f);
+    for (int has_surface = 0; has_surface < 2; has_surface++) {
+        const char *material = has_surface ? NULL : "nothing";
+        render_lamp(material, false, false, 1, FIRST_TWO, still, said);
+        for (int way = 0; way < 4; way++) {
+            render_lamp(material, way & 1, way & 2, STEPS, 3, way ? other : first, said);
+            if (way > 0)
+                assert_memory_equal(first, other, sizeof first);
+            assert_non_null(strstr(said, has_surface ? "it stands as it does at the opening of the shutter"
+                                                     : "a shape with the material \"interface\" cannot shine"));
+            assert_null(strstr(said, has_surface ? "interface" : "it stands"));
+            assert_null(strstr(said, "photon"));
+        }
+        if (has_surface)
+            assert_memory_equal(still, first, sizeof first);
+        else
+            assert_memory_not_equal(still, first, sizeof first);
+    }
+}
+
 /* A step that is written to and told of is seen, and what is not changed is kept. */
 static void a_changed_step_is_seen(void **state)
 {
@@ -181,6 +253,7 @@ static void mistakes_are_named(void **state)
 {
     (void)state;
     static const int32_t NONE = 0, MANY = 130, FIVE = 5;
+    float pixels[COUNT];
     make_arrays(0.05f);
     for (int is_borrowed = 0; is_borrowed < 2; is_borrowed++) {
         desk d;
@@ -214,6 +287,8 @@ static void mistakes_are_named(void **state)
         expect_said(&d, "a shape with an area light whose vertices move is not supported: it stands as it does at the "
                         "opening of the shutter");
         assert_int_equal(ag_scene_commit(d.made), AG_OK);
+        render(d.context, d.made, pixels); /* which checks what is borrowed */
+        assert_string_equal(d.said, "");
         end(&d);
     }
 }
@@ -221,9 +296,8 @@ static void mistakes_are_named(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(all_ways_have_one_picture),
-        cmocka_unit_test(a_changed_step_is_seen),
-        cmocka_unit_test(another_shutter_is_fine),
+        cmocka_unit_test(all_ways_have_one_picture), cmocka_unit_test(a_lamp_stands_still_where_it_has_a_surface),
+        cmocka_unit_test(a_changed_step_is_seen),    cmocka_unit_test(another_shutter_is_fine),
         cmocka_unit_test(mistakes_are_named),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

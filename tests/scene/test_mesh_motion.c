@@ -289,13 +289,11 @@ static void a_sliver_is_found_where_it_was_at_first(void **state)
     for (int i = 0; i < 2; i++) {
         vec3 positions[7] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
         uint32_t indices[3] = {0, 1, 2};
-        const mesh m = {
-            .vertex_count = 3, .triangle_count = 1, .motion_segments = 1, .positions = positions, .indices = indices};
+        const mesh m = {3, 1, 1, positions, .indices = indices};
         memcpy(positions + 3, SLIVERS[i], sizeof SLIVERS[i]);
         const vec3 e1 = vec3_sub(positions[4], positions[3]), e2 = vec3_sub(positions[5], positions[3]),
                    normal = vec3_normalize(vec3_cross(e1, e2));
         const float square = vec3_length_squared(vec3_cross(e1, e2)), tolerance = i == 0 ? 1e-5f : 2e-3f;
-        assert_close(vec3_length(e1) * vec3_length(e1) / sqrtf(square), 4000.0, 300.0);
         for (int k = 0; k <= 10; k++)
             for (int j = 0; j <= 10 - k; j++) {
                 const float b1 = 0.1f * (float)k, b2 = 0.1f * (float)j;
@@ -303,8 +301,7 @@ static void a_sliver_is_found_where_it_was_at_first(void **state)
                 double area[3] = {(double)normal.x, (double)normal.y, (double)normal.z};
                 mesh_move_to_opening(&m, 0, 1.0f, &point, area);
                 expect_near(point, (vec3){b1, b2, 0.0f}, tolerance);
-                assert_close(area[0], 0.0, 1e-9);
-                assert_close(area[1], 0.0, 1e-9);
+                assert_true(fabs(area[0]) + fabs(area[1]) < 1e-9);
                 assert_relative(area[2], 1.0 / sqrt((double)square), 1e-3);
             }
     }
@@ -337,8 +334,8 @@ static void what_opens_from_nothing_is_told(void **state)
     test_run_reset(&r);
 }
 
-/* Bounds hold all that the vertices reach; what is looked for in a mesh at rest is not looked for in one that is not.
- */
+/* Bounds hold all that the vertices reach; what is looked for in a mesh at rest alone is not looked for in a moving
+ * one. */
 static void the_scene_knows_of_the_motion(void **state)
 {
     (void)state;
@@ -403,23 +400,47 @@ static void subdivision_is_of_each_step(void **state)
     test_run_reset(&r);
 }
 
-/* A lamp stands still, as it does where a matrix would move it, and that is told. */
+/* A lamp stands still, as it does where a matrix would move it, and loses the triangles that have no area then; what
+ * does not shine moves and keeps them. What is said last tells of it, and nothing of photons. */
 static void a_lamp_stands_still(void **state)
 {
     (void)state;
-    static const char TEXT[] = "WorldBegin AreaLightSource \"diffuse\" Shape \"trianglemesh\" " OPENING_AND_END
-                               "[0 0 0 1 0 0 0 1 0  0 0 5 1 0 5 0 1 5]";
-    test_run r;
-    test_run_init(&r, 1);
-    scene *s = scene_create();
-    assert_int_equal(pbrt_parse_text(&r.run, "t", TEXT, strlen(TEXT), s), AG_OK);
-    assert_non_null(strstr(r.said, "it stands as it does at the opening of the shutter"));
-    assert_int_equal(r.warning_count, 1);
-    assert_int_equal(scene_commit(s, &r.run, NULL), AG_OK);
-    assert_false(s->has_motion);
-    assert_true(s->bounds_max.z == 0.0f);
-    scene_destroy(s);
-    test_run_reset(&r);
+    static const struct {
+        const char *material, *indices;
+        int warnings;
+        const char *last;
+        uint32_t lights, triangles;
+    } CASES[] = {
+        {"diffuse", "0 1 2", 1, "it stands as it does at the opening of the shutter", 1, 1},
+        {"diffuse", "0 1 2 3 4 5", 2, "1 of 2 triangles have no area and are left out", 1, 1},
+        {"diffuse", "3 4 5", 3, "is empty and is left out, and its area light with it", 0, 0},
+        {"interface", "0 1 2 3 4 5", 1, "\"interface\" cannot shine", 0, 2},
+    };
+    for (size_t i = 0; i < sizeof CASES / sizeof *CASES; i++) {
+        char text[512];
+        test_run r;
+        test_run_init(&r, 1);
+        scene *s = scene_create();
+        snprintf(
+            text, sizeof text,
+            "WorldBegin Material \"%s\" AreaLightSource \"diffuse\" Shape \"trianglemesh\" \"integer motionsteps\" 2 "
+            "\"integer indices\" [%s] \"point3 P\" [0 0 0 1 0 0 0 1 0 8 8 8 8 8 8 8 8 8 "
+            "0 0 5 1 0 5 0 1 5 8 8 8 9 8 8 8 9 8]",
+            CASES[i].material, CASES[i].indices);
+        assert_int_equal(pbrt_parse_text(&r.run, "t", text, strlen(text), s), AG_OK);
+        assert_int_equal(r.warning_count, CASES[i].warnings);
+        assert_non_null(strstr(r.said, CASES[i].last));
+        assert_int_equal(s->light_count, CASES[i].lights);
+        assert_int_equal(s->shape_count, CASES[i].triangles > 0);
+        if (s->shape_count > 0) {
+            assert_int_equal(s->shapes[0].as.mesh.triangle_count, CASES[i].triangles);
+            assert_int_equal(scene_commit(s, &r.run, NULL), AG_OK);
+            assert_true(s->has_motion == (CASES[i].lights == 0));
+            assert_true(s->bounds_max.x == (s->has_motion ? 9.0f : 8.0f));
+        }
+        scene_destroy(s);
+        test_run_reset(&r);
+    }
 }
 
 static void nonsense_is_refused(void **state)

@@ -154,8 +154,10 @@ ag_status pbrt_builder_mesh(pbrt_builder *b, const pbrt_call *call, const pbrt_p
     if (shines)
         parser->state.area_light = LAMP;
     parser->borrowed = borrowed;
+    parser->is_material_unknown = true;
     const ag_status status = direct_at(parser, call, &alone, pbrt_shape, &type, 1, items, NULL);
     parser->borrowed = NULL;
+    parser->is_material_unknown = false;
     parser->state.area_light = (pbrt_area_light){0};
     *out_mesh = shape_make(SHAPE_MESH);
     if (status == AG_OK && s->shape_count > 0) {

@@ -58,9 +58,10 @@ typedef struct pbrt_borrowed {
 /* Whether shapes of that type are meshes, whose arrays can be read once and serve in several scenes. */
 bool pbrt_builder_makes_mesh(const char *type);
 /* The mesh that the parameters make where `at` puts it, alone, in a builder that is used for nothing else; without
- * triangles where it would be left out. shines: as a shape that does stands still. borrowed: instead of P, uv and
- * indices of a trianglemesh, copied as far as they cannot be used as they are; NULL: nothing is. The caller's, by
- * shape_reset. */
+ * triangles where it would be left out. shines: the shape has an area light, and stands where it does at the start;
+ * whether its vertices stand still too depends on its material, and is left to pbrt_builder_shape. borrowed: instead of
+ * P, uv and indices of a trianglemesh, copied as far as they cannot be used as they are; NULL: nothing is. The
+ * caller's, by shape_reset. */
 ag_status pbrt_builder_mesh(pbrt_builder *b, const pbrt_call *call, const pbrt_placement *at, const char *type,
                             pbrt_items items, bool shines, const pbrt_borrowed *borrowed, struct shape *out_mesh);
 ag_status pbrt_builder_light(pbrt_builder *b, const pbrt_call *call, const pbrt_placement *at, const char *type,

@@ -4,6 +4,7 @@
  * Flow: pbrt_shapes, pbrt_patches, pbrt_ply, pbrt_subdivision -> [here] -> scene.shapes. Threads: one per scene. */
 #include "pbrt/pbrt_meshes.h"
 
+#include "shape/borrowed_arrays.h"
 #include "shape/mesh_motion.h"
 
 #include <stdlib.h>
@@ -124,18 +125,24 @@ static size_t drop_degenerate(const mesh *m, size_t *out_late)
     return kept;
 }
 
-ag_status pbrt_add_object_mesh(pbrt_parser *parser, const parameter_list *list, mesh *object_mesh, size_t dropped,
-                               bool expects_degenerate)
+/* Whether vertices move that have to stand still, as those of lamps do; if so it is told. */
+static bool has_to_stand_still(pbrt_parser *parser, const parameter_list *list, const mesh *m)
 {
     const pbrt_state *state = &parser->state;
-    shape s = shape_make(SHAPE_MESH);
-    s.flip_normal = state->reverse_orientation != transform_swaps_handedness(&state->world_from_object);
-    s.as.mesh = *object_mesh;
-    mesh *m = &s.as.mesh;
-    if (!transform_vertices(state, m)) {
-        mesh_reset(m);
-        return pbrt_refuse(parser, list, "P", "a vertex lies beyond 1e18 units in world space");
-    }
+    const bool shines = state->area_light.is_set && !state->has_no_surface && !parser->is_material_unknown;
+    if (m->motion_segments == 0 || !shines)
+        return false;
+    log_at_once(parser->log, AG_LOG_WARNING, list->where, "deforming light",
+                "a shape with an area light whose vertices move is not supported: it stands as it does at the opening "
+                "of the shutter");
+    return true;
+}
+
+/* Adds a mesh that is in world space, less the triangles without area, whose arrays are its alone; takes it. */
+static ag_status add_world_mesh(pbrt_parser *parser, const parameter_list *list, shape *s, size_t dropped,
+                                bool expects_degenerate)
+{
+    mesh *m = &s->as.mesh;
     size_t count = m->triangle_count + dropped, late, kept = drop_degenerate(m, &late);
     if (kept == 0 && count > 0 && !expects_degenerate)
         log_at(parser->log, AG_LOG_WARNING, list->where,
@@ -146,16 +153,54 @@ ag_status pbrt_add_object_mesh(pbrt_parser *parser, const parameter_list *list, 
                     count - kept, count);
     if (kept == 0) {
         log_at(parser->log, AG_LOG_WARNING, list->where, "Shape \"%s\" is empty and is left out%s", list->name,
-               state->area_light.is_set ? ", and its area light with it" : "");
+               parser->state.area_light.is_set ? ", and its area light with it" : "");
         mesh_reset(m);
         return AG_OK;
     }
-    if (late > 0)
+    if (late > 0 && !parser->state.area_light.is_set) /* a lamp stands still, and an interface has no photons */
         log_at(parser->log, AG_LOG_WARNING, list->where,
                "Shape \"%s\": %zu of %zu triangles have no area when the shutter opens: photons are kept as they lie "
                "then, so that no indirect light of the photon map is on them",
                list->name, late, kept);
     m->triangle_count = (uint32_t)kept;
+    return pbrt_add_shape(parser, list, s);
+}
+
+ag_status pbrt_add_object_mesh(pbrt_parser *parser, const parameter_list *list, mesh *object_mesh, size_t dropped,
+                               bool expects_degenerate)
+{
+    const pbrt_state *state = &parser->state;
+    shape s = shape_make(SHAPE_MESH);
+    s.flip_normal = state->reverse_orientation != transform_swaps_handedness(&state->world_from_object);
+    s.as.mesh = *object_mesh;
+    if (!transform_vertices(state, &s.as.mesh)) {
+        mesh_reset(&s.as.mesh);
+        return pbrt_refuse(parser, list, "P", "a vertex lies beyond 1e18 units in world space");
+    }
+    if (has_to_stand_still(parser, list, &s.as.mesh))
+        s.as.mesh.motion_segments = 0;
+    return add_world_mesh(parser, list, &s, dropped, expects_degenerate);
+}
+
+ag_status pbrt_add_made_mesh(pbrt_parser *parser, const parameter_list *list)
+{
+    shape s, still = *parser->made_mesh;
+    const mesh *m = &still.as.mesh;
+    const bool stands_still = has_to_stand_still(parser, list, m);
+    bool all_have_area = true;
+    if (stands_still)
+        still.as.mesh.motion_segments = 0;
+    for (size_t i = 0; i < m->triangle_count && stands_still && all_have_area; i++)
+        all_have_area = has_area(m->positions, m->indices + 3 * i);
+    if (!all_have_area) {
+        AG_TRY(shape_copy(&still, NULL, &s));
+        return add_world_mesh(parser, list, &s, 0, false);
+    }
+    AG_TRY(shape_share(parser->made_mesh, &s));
+    if (stands_still) {
+        s.as.mesh.motion_segments = 0;
+        borrowed_arrays_note(&s); /* its positions end with the first set */
+    }
     return pbrt_add_shape(parser, list, &s);
 }
 

@@ -25,6 +25,9 @@ ag_status pbrt_add_mesh(pbrt_parser *parser, const parameter_list *list, const p
  * and taken, also on failure. dropped: triangles that were left out before, for the warning. */
 ag_status pbrt_add_object_mesh(pbrt_parser *parser, const parameter_list *list, mesh *object_mesh, size_t dropped,
                                bool expects_degenerate);
+/* Adds parser->made_mesh, whose arrays the scene then shares, or, of a lamp that would lose triangles because it stands
+ * still, holds its own copies of. */
+ag_status pbrt_add_made_mesh(pbrt_parser *parser, const parameter_list *list);
 /* Whether shapes of that type may have "motionsteps". */
 bool pbrt_has_motion_steps(const char *type);
 /* Reads the arrays that meshes have in common, all but triangle_count. There are *out_index_count indices, a multiple

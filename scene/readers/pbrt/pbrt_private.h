@@ -200,6 +200,7 @@ typedef struct pbrt_parser {
     const struct pbrt_borrowed *borrowed; /* of the trianglemesh that is read next; NULL: nothing is */
     shape *made_mesh; /* borrowed: of the shape that is read next, whose arrays are not among its parameters; without
                          triangles: it was left out. NULL: all are */
+    bool is_material_unknown; /* of the mesh that is read next, which becomes a made_mesh */
     pbrt_picture *pictures;
     size_t picture_count;
     parameter_source source;    /* of the lists that are read */

@@ -4,8 +4,6 @@
  * Flow: pbrt_parser -> [here] -> scene.shapes. Threads: one per scene. */
 #include "pbrt/pbrt_meshes.h"
 
-#include "shape/mesh_motion.h"
-
 #include <string.h>
 
 /* Whether the last shape of the scene has this name, or as little one. */
@@ -35,12 +33,6 @@ ag_status pbrt_add_shape(pbrt_parser *parser, const parameter_list *list, shape 
         log_at(parser->log, AG_LOG_WARNING, list->where,
                "a shape with the material \"interface\" cannot shine: its area light is left out");
         shines = false;
-    }
-    if (shines && shape_is_deforming(s)) {
-        log_at_once(parser->log, AG_LOG_WARNING, list->where, "deforming light",
-                    "a shape with an area light whose vertices move is not supported: it stands as it does at the "
-                    "opening of the shutter");
-        s->as.mesh.motion_segments = 0;
     }
     if (shines && parser->open_object)
         return pbrt_add_object_lamp(parser, s, list->where);
@@ -169,11 +161,9 @@ static ag_status add_made_mesh(pbrt_parser *parser, parameter_list *list)
 {
     const parameter *file = parameter_list_find(list, "filename");
     const uint32_t index = parser->scene->shape_count;
-    shape s;
     if (parser->made_mesh->as.mesh.triangle_count == 0)
         return AG_OK;
-    AG_TRY(shape_share(parser->made_mesh, &s));
-    AG_TRY(pbrt_add_shape(parser, list, &s));
+    AG_TRY(pbrt_add_made_mesh(parser, list));
     return file && file->strings && parser->scene->shape_count > index
                ? scene_set_name(parser->scene, NAMED_SHAPE, index, file->strings[0])
                : AG_OK;
