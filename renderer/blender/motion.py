@@ -39,11 +39,17 @@ def _may_deform(instance, scene):
             and instance.object.type in meshes.SURFACES and instance.object.is_deform_modified(scene, "RENDER"))
 
 
-def _shapes(depsgraph, before):
-    """The poses of what may deform; those that have not changed are the ones of `before`, of the first step."""
+def _stride(shown, last):
+    """Of the steps 0 to `last` of all objects an object takes each so many-th: steps are powers of two, and one."""
+    return max(last // (_steps_of(shown) - 1), 1)
+
+
+def _shapes(depsgraph, k, last, before):
+    """The poses of what may deform and has a pose at step k; those that have not changed are the ones of `before`, of the
+    first step."""
     shapes, by_data = {}, {}
     for instance in depsgraph.object_instances:
-        if not instance.show_self or not _may_deform(instance, depsgraph.scene):
+        if not instance.show_self or not _may_deform(instance, depsgraph.scene) or k % _stride(instance.object, last):
             continue
         key, data = _key(instance), instance.object.data.as_pointer()
         if data not in by_data:
@@ -58,7 +64,8 @@ def _shapes(depsgraph, before):
 
 
 class Motion:
-    """opened, closed: poses by key, or None where nothing moves. shapes: for each step the poses of meshes, by key."""
+    """opened, closed: poses by key, or None where nothing moves. shapes: for each step the poses of the meshes
+    that have one at it, by key."""
 
     def __init__(self, opened=None, closed=None, shapes=()):
         self._opened, self._closed, self._shapes = opened, closed, shapes
@@ -79,8 +86,7 @@ class Motion:
         key = _key(instance)
         if not self._shapes or not any(key in shapes for shapes in self._shapes):
             return None
-        stride = (len(self._shapes) - 1) // (_steps_of(instance.object) - 1)
-        poses = [shapes.get(key) for shapes in self._shapes[::max(stride, 1)]]
+        poses = [shapes.get(key) for shapes in self._shapes[::_stride(instance.object, len(self._shapes) - 1)]]
         return None if all(pose is poses[0] for pose in poses) else poses
 
     def of_camera(self, name, matrix):
@@ -109,6 +115,6 @@ def look_ahead(engine, depsgraph, notes):
         if k in (0, last):
             poses.append(_poses(depsgraph))
         if steps:
-            shapes.append(_shapes(depsgraph, shapes[0] if shapes else {}))
+            shapes.append(_shapes(depsgraph, k, last, shapes[0] if shapes else {}))
     engine.frame_set(math.floor(frame), frame - math.floor(frame))
     return Motion(*poses, shapes)
