@@ -10,9 +10,9 @@ from .materials import IN_SPACE
 
 SURFACES = {"MESH", "CURVE", "SURFACE", "FONT", "META"}
 
-# positions, normals: (count, 3), or of a mesh that deforms (steps, count, 3). corners: of a part whose textures are made in
-# space, else None.
-Part = namedtuple("Part", "slot positions triangles normals uvs corners", defaults=(None,))
+# positions, normals: (count, 3), or of a mesh that deforms (steps, count, 3), and then at_frame has those of the frame, else
+# None. corners: of a part whose textures are made in space, else None.
+Part = namedtuple("Part", "slot positions triangles normals uvs corners at_frame", defaults=(None, None))
 
 # A mesh at one time: positions of its vertices, normals of its loops (or None), and the vertices of the loops.
 Pose = namedtuple("Pose", "positions normals loop_vertices")
@@ -122,14 +122,35 @@ def _agree(poses, normals, loop_vertices):
                and len(pose.positions) == len(poses[0].positions) for pose in poses)
 
 
-def _part_in_space(mesh, slot, chosen, positions, loop_vertices, moving, moving_normals):
+class _Vertices:
+    """Positions of a mesh's vertices and normals of its loops (or None), at the frame and, where the mesh deforms, at each
+    step."""
+
+    def __init__(self, positions, normals, poses):
+        self._at_frame = positions, normals
+        self._moving = None
+        if poses:
+            self._moving = (np.stack([pose.positions for pose in poses]),
+                            None if normals is None else np.stack([pose.normals for pose in poses]))
+
+    def part(self, slot, vertices, loops, triangles, uvs, corners=None):
+        """Of these vertices and loops, in this order."""
+        def chosen(values):
+            positions, normals = values
+            return positions[..., vertices, :], None if normals is None else normals[..., loops, :]
+
+        positions, normals = chosen(self._moving or self._at_frame)
+        return Part(int(slot), positions, triangles.astype(np.int32), normals, uvs, corners,
+                    chosen(self._at_frame) if self._moving else None)
+
+
+def _part_in_space(mesh, slot, chosen, positions, loop_vertices, vertices_of):
     """No two triangles have a vertex in common."""
     vertices = loop_vertices[chosen]
     uvs = {layer.name: _array(layer.data, "uv", 2, np.float32)[chosen] for layer in mesh.uv_layers}
     uvs[""] = _uvs(mesh, "")[chosen]
     corners = Corners(positions[vertices], _generated(positions)[vertices], uvs)
-    return Part(int(slot), moving[..., vertices.ravel(), :], np.arange(chosen.size, dtype=np.int32).reshape(-1, 3),
-                None if moving_normals is None else moving_normals[..., chosen.ravel(), :], None, corners)
+    return vertices_of.part(slot, vertices.ravel(), chosen.ravel(), np.arange(chosen.size).reshape(-1, 3), None, corners)
 
 
 def parts_of(mesh, layouts, poses=None):
@@ -144,34 +165,31 @@ def parts_of(mesh, layouts, poses=None):
     triangles = _array(mesh.loop_triangles, "loops", 3, np.int32)
     slots = _array(mesh.loop_triangles, "material_index", 1, np.int32)
     normals = _normals(mesh, positions, loop_vertices)
-    moving, moving_normals = positions, normals
     agree = not poses or _agree(poses, normals, loop_vertices)
-    if poses and agree:
-        moving = np.stack([pose.positions for pose in poses])
-        moving_normals = None if normals is None else np.stack([pose.normals for pose in poses])
+    vertices_of = _Vertices(positions, normals, poses if agree else None)
     parts = []
     slots = np.clip(slots, 0, max(len(layouts) - 1, 0))
     for slot in np.unique(slots):
         chosen = triangles[slots == slot]
         if layouts and layouts[slot] == IN_SPACE:
-            parts.append(_part_in_space(mesh, slot, chosen, positions, loop_vertices, moving, moving_normals))
+            parts.append(_part_in_space(mesh, slot, chosen, positions, loop_vertices, vertices_of))
             continue
         uvs = _layout(mesh, layouts[slot] if layouts else None, positions, loop_vertices)
         if normals is None and uvs is None:
             used, indices = np.unique(loop_vertices[chosen], return_inverse=True)
-            parts.append(Part(int(slot), moving[..., used, :], indices.astype(np.int32), None, None))
+            parts.append(vertices_of.part(slot, used, None, indices, None))
             continue
         used, indices = np.unique(chosen, return_inverse=True)
-        parts.append(Part(int(slot), moving[..., loop_vertices[used], :], indices.astype(np.int32),
-                          None if normals is None else moving_normals[..., used, :], None if uvs is None else uvs[used]))
+        parts.append(vertices_of.part(slot, loop_vertices[used], used, indices, None if uvs is None else uvs[used]))
     return parts, agree
 
 
 def at_rest(part):
-    """The part as it is at the opening of the shutter."""
-    if part.positions.ndim == 2:
+    """The part as it is at the frame."""
+    if part.at_frame is None:
         return part
-    return part._replace(positions=part.positions[0], normals=None if part.normals is None else part.normals[0])
+    positions, normals = part.at_frame
+    return part._replace(positions=positions, normals=normals, at_frame=None)
 
 
 def parameters_of(part):

@@ -1,7 +1,5 @@
 """From the dependency graph to a scene of the renderer: what is drawn, once each, and where."""
 
-import itertools
-
 import numpy as np
 
 from . import cameras, hair, lamps, meshes, worlds
@@ -13,7 +11,8 @@ _PIXELS_LEAST, _PIXELS_MOST, _PIXELS_IN_VIEW, _PIXELS_FOR_EACH = 1 << 16, 1 << 2
 
 
 class _Model:
-    """The parts of one mesh, and where it stands: pairs of matrices, as the shutter opens and closes (or None)."""
+    """The parts of one mesh, and where it stands: its matrices as the shutter opens, as it closes (or None), and at the
+    frame."""
 
     def __init__(self, name, parts, looks, group):
         self.name, self.parts, self.looks, self.group, self.places = name, parts, looks, group, []
@@ -115,25 +114,33 @@ def _is_flat(matrix):
     return abs(np.linalg.det(matrix[:3, :3])) < 1e-30
 
 
-def _add_model(scene, model):
-    """One that stands in several places is instanced, but for what shines in it, which stands still in each place. Where
-    a scale of 0 makes it flat it stands still as well, with its vertices in world space."""
-    flat = [place for place, _ in model.places if _is_flat(place)]
-    for place, part in itertools.product(flat, model.parts):
+def _place_part(scene, model, part, place, end=None):
+    """Where a scale of 0 makes it flat it does not go along its matrices, and its vertices are in world space."""
+    if _is_flat(place):
         positions = part.positions @ place[:3, :3].T + place[:3, 3]
         _add_part(scene, model, part._replace(positions=positions, normals=None))
-    model.places = [both for both in model.places if not _is_flat(both[0])]
+    else:
+        _add_part(scene, model, part, world_from_shape=place, world_from_shape_end=end)
+
+
+def _add_model(scene, model):
+    """One that stands in several places is instanced, but for what shines in it, which stands still in each place, where it
+    is at the frame."""
     dark = [part for part in model.parts if model.looks[part.slot].light is None]
     shining = [part for part in model.parts if model.looks[part.slot].light is not None]
-    if len(model.places) == 1:
-        shining, dark = shining + dark, []
-    for place, end in model.places:
+    for _, _, frame in model.places:
         for part in shining:
-            still = model.looks[part.slot].light is not None
-            _add_part(scene, model, part, world_from_shape=place, world_from_shape_end=None if still else end)
+            _place_part(scene, model, part, frame)
+    solid = [(place, end) for place, end, _ in model.places if not _is_flat(place)]
+    alone = [(place, None) for place, _, _ in model.places if _is_flat(place)] + (solid if len(solid) == 1 else [])
+    for place, end in alone:
+        for part in dark:
+            _place_part(scene, model, part, place, end)
+    if len(solid) < 2 or not dark:
+        return
     for part in dark:
         _add_part(scene, model, part, object=model.name)
-    for place, end in model.places if dark else ():
+    for place, end in solid:
         scene.instance(model.name, place, end)
 
 
@@ -175,7 +182,7 @@ def translate(scene, depsgraph, motion, notes, poll, view=None, is_by_name=False
                 models[key] = _model(shown, materials, name, notes, lambda part: sharpness.pixels(
                     part, matrix, instance.is_instance), motion.of_shape(instance))
             if models[key]:
-                models[key].places.append(motion.of_instance(instance, matrix))
+                models[key].places.append((*motion.of_instance(instance, matrix), matrix))
         elif shown.type == "CURVES" and layer.use_strand:
             hair.add_curves(scene, shown, matrix, materials, poll)
             hairy.add(shown.name)
