@@ -27,9 +27,14 @@ static inline float fresnel_thin_dielectric(float cos_in, float eta)
     return r;
 }
 
+/* Of an index beyond this, all light is reflected to single precision; its fourth power would overflow. */
+#define FRESNEL_INDEX_MAX 1e8f
+
 /* Returns the unpolarised reflectance of a conductor, computed without complex numbers. */
 static inline float fresnel_conductor_channel(float cos_in, float eta, float k)
 {
+    eta = eta < FRESNEL_INDEX_MAX ? eta : FRESNEL_INDEX_MAX;
+    k = k < FRESNEL_INDEX_MAX ? k : FRESNEL_INDEX_MAX;
     float c2 = cos_in * cos_in, s2 = 1.0f - c2;
     float t0 = eta * eta - k * k - s2;
     float a2b2 = sqrtf(t0 * t0 + 4.0f * eta * eta * k * k);

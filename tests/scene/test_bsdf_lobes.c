@@ -8,6 +8,19 @@
 
 enum { SAMPLES = 60000 / FEWER };
 
+static void metals_of_huge_indices_reflect_all(void **state)
+{
+    (void)state;
+    static const float HUGE_INDICES[] = {1e8f, 4.29e9f, 1e19f, 3e38f};
+    for (size_t i = 0; i < sizeof HUGE_INDICES / sizeof *HUGE_INDICES; i++)
+        for (int degrees = 0; degrees <= 90; degrees += 15) {
+            float cosine = direction_at(degrees, 0.0).z, huge = HUGE_INDICES[i];
+            assert_close(fresnel_conductor_channel(cosine, 1.0f, huge), 1.0, 1e-6);
+            assert_close(fresnel_conductor_channel(fmaxf(cosine, 0.1f), huge, 0.0f), 1.0, 1e-6);
+            assert_close(fresnel_conductor_channel(fmaxf(cosine, 0.1f), huge, huge), 1.0, 1e-6);
+        }
+}
+
 /* Picks of the groups, and what is said of them. */
 static void samples_tell_their_group(void **state)
 {
@@ -416,6 +429,7 @@ static void a_pane_reflects_and_passes_straight(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(metals_of_huge_indices_reflect_all),
         cmocka_unit_test(samples_tell_their_group),
         cmocka_unit_test(diffuse_transmission_parts_the_light),
         cmocka_unit_test(a_smooth_coat_on_a_diffuse_base_keeps_all),
