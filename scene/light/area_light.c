@@ -233,8 +233,7 @@ static bool emission_numbers_of(const scene *s, const light *l, vec3 point, vec2
     case BY_SOLID_ANGLES:
         if (!mesh_light_sample(lamp, l->as.area.two_sided, point, u, &at, &mesh_density))
             return false;
-        surface_hit hit = {.position = at.position, .primitive_index = at.primitive_index};
-        shape_sample_inverse(lamp, &hit, &u);
+        u = shape_sample_numbers(lamp, &at);
         break;
     case BY_MAP:
         if (!radiance_map_sample(l->as.area.map, u, &on_map, &density))

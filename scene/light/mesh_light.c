@@ -7,9 +7,9 @@
 /* Meshes of more triangles are not looked at whole for each sample. */
 enum { WHOLE_MAX = 16 };
 
-/* Outside of these a triangle is sampled by area: what is small has nearly one distance and one angle everywhere, and
- * half a sphere of directions is beyond the precision of the formulas. */
-static const double TURNS_LEAST = 1e-4, TURNS_MOST = 0.98;
+/* Below the first, where formulas cost more than they bring, and above the second, where nearly half of all directions
+ * meet the triangle and the formulas lose their precision, points of a triangle are uniform in area. */
+static const double TURNS_LEAST = 1e-5, TURNS_MOST = 0.98;
 static const double TWO_PI = 6.283185307179586477;
 
 static spherical_triangle triangle_seen(const mesh *m, uint32_t triangle, vec3 point)

@@ -4,7 +4,8 @@
  *
  * By area alone, a lamp that is near or that turns its back in part gives samples of very different weight: beside a
  * large bright window these are bright specks. Meshes of few triangles are sampled uniformly in the solid angle of all
- * that faces the point; of others a triangle is picked by area, and its solid angle sampled.
+ * that faces the point. Of others a triangle is picked by area and its solid angle sampled, which is as even as the
+ * triangles are small.
  * Threads: read-only. */
 #ifndef AFTERGLOW_MESH_LIGHT_H
 #define AFTERGLOW_MESH_LIGHT_H

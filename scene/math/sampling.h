@@ -9,29 +9,20 @@
 #include "math/angle.h"
 #include "math/vec3.h"
 
-/* Sine and cosine of 2 pi u, u in [-1, 1]. Taylor series about the nearest quarter turn; right to 3e-8. */
-static inline void sincos_turns_double(double u, double *out_sin, double *out_cos)
+/* Sine and cosine of 2 pi u, u in [-1, 1]; right to float precision. Taylor series about the nearest quarter turn. */
+static inline void sincos_turns(float u, float *out_sin, float *out_cos)
 {
-    double quarter = floor(u * 4.0 + 0.5);
-    double x = (u - quarter * 0.25) * 6.283185307179586477;
+    double quarter = floor((double)u * 4.0 + 0.5);
+    double x = ((double)u - quarter * 0.25) * 6.283185307179586477;
     double x2 = x * x;
     double s = x * (1.0 + x2 * (-1.0 / 6 + x2 * (1.0 / 120 + x2 * (-1.0 / 5040 + x2 * (1.0 / 362880)))));
     double c = 1.0 + x2 * (-0.5 + x2 * (1.0 / 24 + x2 * (-1.0 / 720 + x2 * (1.0 / 40320))));
     switch ((int)quarter & 3) {
-    case 0: *out_sin = s, *out_cos = c; break;
-    case 1: *out_sin = c, *out_cos = -s; break;
-    case 2: *out_sin = -s, *out_cos = -c; break;
-    default: *out_sin = -c, *out_cos = s; break;
+    case 0: *out_sin = (float)s, *out_cos = (float)c; break;
+    case 1: *out_sin = (float)c, *out_cos = (float)-s; break;
+    case 2: *out_sin = (float)-s, *out_cos = (float)-c; break;
+    default: *out_sin = (float)-c, *out_cos = (float)s; break;
     }
-}
-
-/* The same in single precision, and right to that. */
-static inline void sincos_turns(float u, float *out_sin, float *out_cos)
-{
-    double s, c;
-    sincos_turns_double((double)u, &s, &c);
-    *out_sin = (float)s;
-    *out_cos = (float)c;
 }
 
 /* Uniform in the unit disk; density 1 / pi. Which half of the square a point is in decides its angle's formula, and is

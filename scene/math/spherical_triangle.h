@@ -19,7 +19,7 @@ spherical_triangle spherical_triangle_seen(vec3 point, vec3 a, vec3 b, vec3 c);
 double spherical_triangle_area(const spherical_triangle *t);
 
 /* Returns the weights of corners b and c in a point of the triangle, whose direction is uniform in its solid angle.
- * Good to 1e-4 of the triangle's size where turns are from 1e-4 to 0.99. */
+ * Good to 1e-4 of the triangle's size where turns are from 1e-5 to 0.98. */
 vec2 spherical_triangle_sample(const spherical_triangle *t, vec2 u);
 
 #endif

@@ -216,6 +216,19 @@ static surface_sample mesh_sample_area(const shape *s, vec2 u)
     return shape_sample_triangle(s, triangle, sample_triangle(u));
 }
 
+/* Back from a place within a triangle to the numbers that pick both; at: what sample_triangle is given. */
+static vec2 numbers_of_triangle(const mesh *m, uint32_t triangle, vec2 at)
+{
+    float before = triangle > 0 ? m->area_cdf[triangle - 1] : 0.0f, share = m->area_cdf[triangle] - before;
+    return (vec2){before + share * at.x, at.y};
+}
+
+vec2 shape_sample_numbers(const shape *s, const surface_sample *sample)
+{
+    vec2 u = numbers_of_triangle(&s->as.mesh, sample->primitive_index, sample_triangle_inverse(sample->barycentrics));
+    return (vec2){float_below_one(fmaxf(u.x, 0.0f)), float_below_one(fmaxf(u.y, 0.0f))};
+}
+
 bool shape_sample_inverse(const shape *s, const surface_hit *hit, vec2 *out_u)
 {
     if (s->kind != SHAPE_MESH)
@@ -226,10 +239,8 @@ bool shape_sample_inverse(const shape *s, const surface_hit *hit, vec2 *out_u)
     vec3 e1 = vec3_sub(mesh_vertex(m, i, 1), corner), e2 = vec3_sub(mesh_vertex(m, i, 2), corner);
     double a = vec3_dot(e1, e1), b = vec3_dot(e1, e2), c = vec3_dot(e2, e2), p1 = vec3_dot(p, e1), p2 = vec3_dot(p, e2);
     double determinant = a * c - b * b, inverse = determinant > 0.0 ? 1.0 / determinant : 0.0;
-    float before = i > 0 ? m->area_cdf[i - 1] : 0.0f, share = m->area_cdf[i] - before;
-    vec2 u =
-        sample_triangle_inverse((vec2){(float)((c * p1 - b * p2) * inverse), (float)((a * p2 - b * p1) * inverse)});
-    *out_u = (vec2){before + share * u.x, u.y};
+    vec2 at = {(float)((c * p1 - b * p2) * inverse), (float)((a * p2 - b * p1) * inverse)};
+    *out_u = numbers_of_triangle(m, i, sample_triangle_inverse(at));
     return true;
 }
 

@@ -137,6 +137,14 @@ static void meshes(void **state)
     snprintf(text, sizeof text,
              LAMP "\"bool twosided\" true Shape \"trianglemesh\" \"integer indices\" [0 1 2 1 2 3] %s", POINTS);
     check_lamp(text, origin, angle);
+    /* the side that shines by vertex normals, or turned over */
+    static const char *const SQUARE =
+        "Shape \"trianglemesh\" \"integer indices\" [0 2 1 0 3 2] \"point3 P\" [-1 -1 1 1 -1 "
+        "1 1 1 1 -1 1 1]";
+    snprintf(text, sizeof text, LAMP "%s \"normal N\" [0 0 -1 0.1 0 -1 0 0.1 -1 0 0 -1]", SQUARE);
+    check_lamp(text, (vec3){0.2f, 0.1f, 0.5f}, 0.0);
+    snprintf(text, sizeof text, "ReverseOrientation " LAMP "%s", SQUARE);
+    check_lamp(text, (vec3){0.2f, 0.1f, 1.5f}, 0.0);
     /* a closed box, seen from outside */
     check_lamp("Translate 2 3 1 " LAMP "Shape \"trianglemesh\" \"integer indices\" [0 3 1 0 2 3 4 5 7 4 7 6 0 1 5 0 5 "
                "4 2 7 3 2 6 7 0 6 2 0 4 6 1 7 5 1 3 7]\n"

@@ -397,6 +397,9 @@ static void ways_to_lamps_tell_where_photons_begin(void **state)
         {"AttributeBegin AreaLightSource \"diffuse\" Shape \"bilinearmesh\" \"point3 P\" [-1 -1 0 1 -1 0 -1 1 0 1 1 0] "
          "AttributeEnd",
          FLOOR, true},
+        {"AttributeBegin Rotate 33 0 0 1 AreaLightSource \"diffuse\" Shape \"trianglemesh\" \"point3 P\" [-1 0 0 1 0 0 1 .001 "
+         "0] AttributeEnd",
+         FLOOR, true},
         {"AttributeBegin Rotate 180 1 0 0 AreaLightSource \"diffuse\" \"bool twosided\" true Shape \"disk\" "
          "AttributeEnd",
          FLOOR, true},

@@ -79,7 +79,16 @@ static void points_are_uniform_in_solid_angle(void **state)
     check_uniform((vec3[3]){{-1.0f, -1.0f, 0.1f}, {5.0f, -1.0f, 0.1f}, {-1.0f, 4.0f, 0.1f}}); /* close below */
     check_uniform((vec3[3]){{-1.0f, -1.0f, 0.1f}, {-1.0f, 4.0f, 0.1f}, {5.0f, -1.0f, 0.1f}}); /* from behind */
     check_uniform((vec3[3]){{1.0f, 0.0f, 30.0f}, {0.0f, 1.0f, 30.0f}, {0.0f, 0.0f, 31.0f}});  /* small */
-    check_uniform((vec3[3]){{-9.0f, 0.0f, 1.0f}, {9.0f, 0.0f, 1.0f}, {0.0f, 0.2f, 1.0f}});    /* long and thin */
+    for (int k = 0; k < 3; k++) { /* close to the middle of each side */
+        for (float height = 1e-3f; height > 5e-5f; height *= 0.1f) {
+            vec3 p[3];
+            p[k] = (vec3){-1.0f, 0.0f, height};
+            p[(k + 1) % 3] = (vec3){1.0f, 0.0f, height};
+            p[(k + 2) % 3] = (vec3){0.0f, 1.5f, height};
+            check_uniform(p);
+        }
+    }
+    check_uniform((vec3[3]){{-9.0f, 0.0f, 1.0f}, {9.0f, 0.0f, 1.0f}, {0.0f, 0.2f, 1.0f}}); /* long and thin */
 }
 
 /* Numbers at the square's edges give points of the triangle's edges, not of elsewhere. */
