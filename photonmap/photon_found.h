@@ -19,7 +19,8 @@ typedef struct photon_found {
     photon_neighbor *scratch; /* [capacity] */
 } photon_found;
 
-/* What a worker's search tells its next one. It changes the time of searches alone. */
+/* A worker's search leaves this for the worker's next search, which begins there. The hint changes how long a search
+ * takes, and never what it finds. */
 typedef struct photon_search_hint {
     vec3 position;        /* of the last search */
     float radius_squared; /* of the disc that it found; 0: there was none */

@@ -117,31 +117,39 @@ static lamp_sampling sampling_from(const light *l, const shape *lamp, vec3 point
     return sphere_cone(lamp, point, out_cone) ? BY_CONE : BY_AREA;
 }
 
-static float per_solid_angle(double density_by_area, float distance_squared, float cos_lamp)
-{
-    return (float)(density_by_area * (double)distance_squared / (double)cos_lamp);
-}
-
 static float pdf_of(mesh_light_density density, float distance_squared, float cos_lamp)
 {
-    return density.is_by_area ? per_solid_angle(density.value, distance_squared, cos_lamp) : (float)density.value;
+    return (float)(density.is_by_area ? density.value * (double)distance_squared / (double)cos_lamp : density.value);
+}
+
+/* A point on the lamp, sampled from a lit point. */
+typedef struct lamp_point {
+    surface_sample at;
+    lamp_sampling sampling;
+    float cone;                 /* BY_CONE */
+    mesh_light_density density; /* BY_SOLID_ANGLES */
+    float map_density;          /* the factor of the density by area; 1 but BY_MAP */
+} lamp_point;
+
+static bool sample_lamp(const light *l, const shape *lamp, vec3 point, vec2 u, lamp_point *out)
+{
+    out->sampling = sampling_from(l, lamp, point, &out->cone);
+    out->map_density = 1.0f;
+    if (out->sampling == BY_SOLID_ANGLES)
+        return mesh_light_sample(lamp, l->as.area.two_sided, point, u, &out->at, &out->density);
+    if (out->sampling == BY_MAP && !radiance_map_sample(l->as.area.map, u, &u, &out->map_density))
+        return false;
+    out->at = out->sampling == BY_CONE ? sample_sphere_cone(lamp, point, u, out->cone) : shape_sample_area(lamp, u);
+    return true;
 }
 
 static bool sample_from_point(const scene *s, const light *l, vec3 point, vec2 u, light_sample *out)
 {
     const shape *lamp = &s->shapes[l->as.area.shape_index];
-    surface_sample at;
-    mesh_light_density mesh_density;
-    float cone, density = 1.0f;
-    lamp_sampling sampling = sampling_from(l, lamp, point, &cone);
-    if (sampling == BY_MAP && !radiance_map_sample(l->as.area.map, u, &u, &density))
+    lamp_point picked;
+    if (!sample_lamp(l, lamp, point, u, &picked))
         return false;
-    if (sampling == BY_CONE)
-        at = sample_sphere_cone(lamp, point, u, cone);
-    else if (sampling != BY_SOLID_ANGLES)
-        at = shape_sample_area(lamp, u);
-    else if (!mesh_light_sample(lamp, l->as.area.two_sided, point, u, &at, &mesh_density))
-        return false;
+    const surface_sample at = picked.at;
     vec3 to_lamp = vec3_sub(at.position, point);
     float distance_squared = vec3_length_squared(to_lamp);
     if (!(distance_squared > 0.0f))
@@ -154,10 +162,10 @@ static bool sample_from_point(const scene *s, const light *l, vec3 point, vec2 u
     float cos_lamp = fabsf(vec3_dot(at.geometric_normal, out->direction));
     if (rgb_is_black(out->radiance) || cos_lamp <= 1e-6f)
         return false;
-    switch (sampling) {
-    case BY_CONE: out->pdf_solid_angle = 1.0f / (2.0f * AG_PI * cone); break;
-    case BY_SOLID_ANGLES: out->pdf_solid_angle = pdf_of(mesh_density, distance_squared, cos_lamp); break;
-    default: out->pdf_solid_angle = at.pdf_area * density * distance_squared / cos_lamp;
+    switch (picked.sampling) {
+    case BY_CONE: out->pdf_solid_angle = 1.0f / (2.0f * AG_PI * picked.cone); break;
+    case BY_SOLID_ANGLES: out->pdf_solid_angle = pdf_of(picked.density, distance_squared, cos_lamp); break;
+    default: out->pdf_solid_angle = at.pdf_area * picked.map_density * distance_squared / cos_lamp;
     }
     out->shadow_target =
         vec3_add_scaled(at.position, vec3_face_forward(at.geometric_normal, vec3_negate(out->direction)), at.epsilon);
@@ -224,29 +232,12 @@ static bool emission_numbers_of(const scene *s, const light *l, vec3 point, vec2
                                 emission_numbers *in_out)
 {
     const shape *lamp = &s->shapes[l->as.area.shape_index];
-    float density, cone;
-    mesh_light_density mesh_density;
-    surface_sample at;
-    vec2 on_map = u;
-    switch (sampling_from(l, lamp, point, &cone)) {
-    case BY_CONE: return false; /* not by the numbers of the position */
-    case BY_SOLID_ANGLES:
-        if (!mesh_light_sample(lamp, l->as.area.two_sided, point, u, &at, &mesh_density))
-            return false;
-        u = shape_sample_numbers(lamp, &at);
-        break;
-    case BY_MAP:
-        if (!radiance_map_sample(l->as.area.map, u, &on_map, &density))
-            return false;
-        at = shape_sample_area(lamp, on_map);
-        break;
-    default:
-        if (l->as.area.map)
-            return false;
-        at = shape_sample_area(lamp, u);
-    }
-    in_out->position = u;
-    vec3 n = at.geometric_normal, direction = vec3_negate(towards->direction);
+    lamp_point picked;
+    if (!sample_lamp(l, lamp, point, u, &picked) || picked.sampling == BY_CONE ||
+        (picked.sampling == BY_AREA && l->as.area.map))
+        return false; /* not by the numbers of the position */
+    in_out->position = picked.sampling == BY_SOLID_ANGLES ? shape_sample_numbers(lamp, &picked.at) : u;
+    vec3 n = picked.at.geometric_normal, direction = vec3_negate(towards->direction);
     if (l->as.area.two_sided) {
         bool is_behind = vec3_dot(n, direction) < 0.0f;
         in_out->part = float_below_one(0.5f * in_out->part + (is_behind ? 0.0f : 0.5f));

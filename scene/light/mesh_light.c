@@ -34,11 +34,6 @@ static mesh_light_density density_within(const spherical_triangle *t, double pro
     return (mesh_light_density){area > 0.0 ? probability / area : 0.0, true};
 }
 
-static float area_share(const mesh *m, uint32_t triangle)
-{
-    return m->area_cdf[triangle] - (triangle > 0 ? m->area_cdf[triangle - 1] : 0.0f);
-}
-
 bool mesh_light_sample(const shape *lamp, bool is_two_sided, vec3 point, vec2 u, surface_sample *out_sample,
                        mesh_light_density *out_density)
 {
@@ -70,7 +65,7 @@ bool mesh_light_sample(const shape *lamp, bool is_two_sided, vec3 point, vec2 u,
     } else {
         picked = shape_pick_triangle(lamp, &u.x);
         t = triangle_seen(m, picked, point);
-        probability = (double)area_share(m, picked);
+        probability = (double)mesh_area_share(m, picked);
     }
     *out_density = density_within(&t, probability);
     if (!(out_density->value > 0.0))
@@ -85,7 +80,7 @@ mesh_light_density mesh_light_density_of(const shape *lamp, bool is_two_sided, v
     const mesh *m = &lamp->as.mesh;
     spherical_triangle t = triangle_seen(m, triangle, point);
     if (m->triangle_count > WHOLE_MAX)
-        return density_within(&t, (double)area_share(m, triangle));
+        return density_within(&t, (double)mesh_area_share(m, triangle));
     double sum = 0.0;
     for (uint32_t i = 0; i < m->triangle_count; i++) {
         spherical_triangle other = triangle_seen(m, i, point);

@@ -204,7 +204,7 @@ uint32_t shape_pick_triangle(const shape *s, float *in_out_u)
         else
             low = middle + 1;
     }
-    float before = low > 0 ? m->area_cdf[low - 1] : 0.0f, share = m->area_cdf[low] - before;
+    float before = low > 0 ? m->area_cdf[low - 1] : 0.0f, share = mesh_area_share(m, low);
     if (share > 0.0f)
         *in_out_u = float_below_one(fmaxf((*in_out_u - before) / share, 0.0f));
     return low;
@@ -219,8 +219,8 @@ static surface_sample mesh_sample_area(const shape *s, vec2 u)
 /* Back from a place within a triangle to the numbers that pick both; at: what sample_triangle is given. */
 static vec2 numbers_of_triangle(const mesh *m, uint32_t triangle, vec2 at)
 {
-    float before = triangle > 0 ? m->area_cdf[triangle - 1] : 0.0f, share = m->area_cdf[triangle] - before;
-    return (vec2){before + share * at.x, at.y};
+    float before = triangle > 0 ? m->area_cdf[triangle - 1] : 0.0f;
+    return (vec2){before + mesh_area_share(m, triangle) * at.x, at.y};
 }
 
 vec2 shape_sample_numbers(const shape *s, const surface_sample *sample)

@@ -125,6 +125,12 @@ uint64_t shape_hash_borrowed(const shape *s);
 ag_status shape_copy(const shape *s, const transform *map, shape *out_copy);
 
 surface_sample shape_sample_area(const shape *s, vec2 u);
+/* Returns the probability with which shape_pick_triangle picks that triangle of a mesh with area_cdf. */
+static inline float mesh_area_share(const mesh *m, uint32_t triangle)
+{
+    return m->area_cdf[triangle] - (triangle > 0 ? m->area_cdf[triangle - 1] : 0.0f);
+}
+
 /* Picks a triangle of a mesh that is a lamp with a probability in proportion to its area, and returns its number.
  * *in_out_u is uniform in [0, 1), and afterwards another such number, which does not depend on the triangle. */
 uint32_t shape_pick_triangle(const shape *s, float *in_out_u);

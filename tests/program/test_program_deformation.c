@@ -170,9 +170,9 @@ static void test_deforming_blocks(void **state)
     compare_parts("deforming_blocks", "--spp=64", BOUNDS);
 }
 
-/* What a dark wall gets from a sheet under the sun, that is stretched to four times its area while the shutter is open:
- * its irradiance is the same at all times. Photons are kept by the area that they had when it opened, or the map would
- * be wrong by up to four. */
+/* The sun lights a sheet that is stretched to four times its area while the shutter is open, and the sheet lights a
+ * dark wall. The sheet's irradiance is the same at all times, so the map must count a photon by the area that its place
+ * had when the shutter opened; else it is wrong by up to a factor of four. */
 static void test_stretched_sheet(void **state)
 {
     (void)state;

@@ -152,8 +152,9 @@ static void meshes(void **state)
                origin, 0.0);
 }
 
-/* What a sample of a lamp weighs on a surface that faces up: radiance times cosine over density. Beside a lamp none is
- * far above the mean, which would be a bright speck in the picture. largest: over the mean. */
+/* Samples the lamp from a point on a surface that faces up. A sample weighs the cosine over its density; the mean is
+ * the irradiance of a lamp of radiance 1, and no sample weighs more than `largest` times the mean, since such a sample
+ * would be a bright speck in a picture. */
 static void check_weights(const char *world, vec3 point, double irradiance, double largest)
 {
     test_run r;
