@@ -3,6 +3,7 @@
 #define _GNU_SOURCE
 #include "file_conflicts.h"
 
+#include "frame_options.h"
 #include "picture_mark.h"
 
 #include <limits.h>
@@ -158,7 +159,7 @@ bool file_conflicts_of_options(const options *o)
     return has;
 }
 
-bool file_conflicts_with_scene(const options *o, const ag_scene *scene)
+static bool is_written_over(const options *o, const ag_scene *scene)
 {
     output_list outputs;
     bool has = false, is_whole = output_list_create(o, &outputs);
@@ -171,4 +172,148 @@ bool file_conflicts_with_scene(const options *o, const ag_scene *scene)
     }
     output_list_reset(&outputs);
     return has;
+}
+
+bool file_conflicts_with_scene(const options *o, const ag_scene *scene)
+{
+    const options *all = o->of_all_frames;
+    if (is_written_over(o, scene))
+        return true;
+    bool has = false;
+    /* The first frame's files are likely to be those of the others. */
+    for (int i = 1; all && o->frame == all->frames.numbers[0] && i < all->frames.count && !has; i++) {
+        options other;
+        has = frame_options_make(all, all->frames.numbers[i], &other) && is_written_over(&other, scene);
+        frame_options_reset(&other, all->outfile_count);
+    }
+    return has;
+}
+
+/* --- among frames --- */
+
+/* What a frame does with a file, as a key that files which are one have in common. */
+typedef struct file_use {
+    dev_t device; /* of the file, or of its folder */
+    ino_t inode;
+    uint64_t name; /* a hash of the name in that folder; 0: the file is there */
+    int frame;     /* as it counts in the list */
+    int file;      /* of its outputs, or one of the inputs below */
+} file_use;
+
+enum { READ_SCENE = -1, READ_SKY = -2 };
+
+typedef struct use_list {
+    file_use *uses; /* owned */
+    size_t count;
+} use_list;
+
+static uint64_t hash_name(const char *name)
+{
+    uint64_t hash = 0xcbf29ce484222325; /* FNV-1a */
+    for (; *name; name++)
+        hash = (hash ^ (unsigned char)*name) * 0x100000001b3;
+    return hash;
+}
+
+static void add_use(use_list *list, const char *path, int frame, int file)
+{
+    const named_file f = find(path);
+    if (f.is_there ? f.is_regular : f.name[0] != '\0')
+        list->uses[list->count++] = (file_use){f.device, f.inode, f.is_there ? 0 : hash_name(f.name), frame, file};
+}
+
+/* What all frames read under one name is noted with the first of them. */
+static bool is_noted(const char *pattern, int frame)
+{
+    return pattern && strcmp(pattern, "-") != 0 && (frame == 0 || frames_has_placeholder(pattern));
+}
+
+static bool add_uses(use_list *list, const options *o, int frame)
+{
+    options one;
+    output_list outputs = {0};
+    const bool is_whole = frame_options_make(o, o->frames.numbers[frame], &one) && output_list_create(&one, &outputs);
+    file_use *larger =
+        is_whole ? realloc(list->uses, (list->count + (size_t)outputs.count + 2) * sizeof *larger) : NULL;
+    if (larger) {
+        list->uses = larger;
+        if (is_noted(o->scene, frame))
+            add_use(list, one.scene, frame, READ_SCENE);
+        if (is_noted(o->asked.sky_file, frame))
+            add_use(list, one.asked.sky_file, frame, READ_SKY);
+        for (int i = 0; i < outputs.count; i++)
+            if (outputs.paths[i] != one.render.photon_map_file || is_noted(o->render.photon_map_file, frame))
+                add_use(list, outputs.paths[i], frame, i);
+    }
+    output_list_reset(&outputs);
+    frame_options_reset(&one, o->outfile_count);
+    return larger != NULL;
+}
+
+static int compare_keys(const file_use *a, const file_use *b)
+{
+    if (a->device != b->device)
+        return a->device < b->device ? -1 : 1;
+    if (a->inode != b->inode)
+        return a->inode < b->inode ? -1 : 1;
+    return a->name < b->name ? -1 : a->name > b->name;
+}
+
+static int compare_uses(const void *a, const void *b)
+{
+    const file_use *of_a = a, *of_b = b;
+    const int by_key = compare_keys(of_a, of_b);
+    if (by_key != 0)
+        return by_key;
+    return of_a->file != of_b->file ? (of_a->file > of_b->file) - (of_a->file < of_b->file)
+                                    : (of_a->frame > of_b->frame) - (of_a->frame < of_b->frame);
+}
+
+/* Whether one frame would write over what another one reads or writes. */
+static bool is_conflict(const options *o, const file_use *a, const file_use *b)
+{
+    const int *numbers = o->frames.numbers;
+    return compare_keys(a, b) == 0 && b->file >= 0 && (a->file < 0 || numbers[a->frame] != numbers[b->frame]);
+}
+
+static char *path_of(const options *o, const file_use *use)
+{
+    options one;
+    output_list outputs = {0};
+    char *path = NULL;
+    if (frame_options_make(o, o->frames.numbers[use->frame], &one) && output_list_create(&one, &outputs))
+        path = strdup(use->file == READ_SCENE ? one.scene
+                      : use->file == READ_SKY ? one.asked.sky_file
+                                              : outputs.paths[use->file]);
+    output_list_reset(&outputs);
+    frame_options_reset(&one, o->outfile_count);
+    return path;
+}
+
+static ag_status tell_frames(const options *o, const file_use *a, const file_use *b)
+{
+    char *other = path_of(o, a), *output = path_of(o, b);
+    const ag_status status = other && output ? AG_ERROR_ARGUMENT : AG_ERROR_MEMORY;
+    if (status == AG_ERROR_ARGUMENT)
+        fprintf(
+            stderr, "afterglow: '%s' is to be written in frame %d, and %s in frame %d, as '%s': give another name\n",
+            output, o->frames.numbers[b->frame], a->file < 0 ? "read" : "written", o->frames.numbers[a->frame], other);
+    free(other);
+    free(output);
+    return status;
+}
+
+ag_status file_conflicts_of_frames(const options *o)
+{
+    use_list list = {0};
+    ag_status status = AG_OK;
+    for (int i = 0; i < o->frames.count && status == AG_OK; i++)
+        status = add_uses(&list, o, i) ? AG_OK : AG_ERROR_MEMORY;
+    if (status == AG_OK && list.count > 0)
+        qsort(list.uses, list.count, sizeof *list.uses, compare_uses);
+    for (size_t i = 1; i < list.count && status == AG_OK; i++)
+        if (is_conflict(o, &list.uses[i - 1], &list.uses[i]))
+            status = tell_frames(o, &list.uses[i - 1], &list.uses[i]);
+    free(list.uses);
+    return status;
 }

@@ -10,7 +10,12 @@
  * on standard error. */
 bool file_conflicts_of_options(const options *o);
 
-/* Whether a file to be written is one that the scene was read from. Says which, on standard error. */
+/* AG_ERROR_ARGUMENT where a frame would write what another one reads, or has written; says which, on standard error.
+ * AG_ERROR_MEMORY. */
+ag_status file_conflicts_of_frames(const options *o);
+
+/* Whether a file to be written is one that the scene was read from, at the first frame also one that a later frame is
+ * to write. Says which, on standard error. */
 bool file_conflicts_with_scene(const options *o, const ag_scene *scene);
 
 #endif

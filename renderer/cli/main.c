@@ -3,6 +3,7 @@
 #define _POSIX_C_SOURCE 200809L
 #include "display_server.h"
 #include "file_conflicts.h"
+#include "frame_options.h"
 #include "large_stack.h"
 #include "memory_limit.h"
 #include "options.h"
@@ -61,10 +62,14 @@ static void name_default_output(const options *o, const ag_scene *scene, int fra
     const char *base = strrchr(o->scene, '/');
     base = base ? base + 1 : o->scene;
     int stem = (int)strcspn(base, ".");
-    if (strcmp(base, "-") == 0 || stem == 0)
-        snprintf(out_name, size, "afterglow.exr");
-    else
+    if (strcmp(base, "-") == 0 || stem == 0) {
+        base = "afterglow";
+        stem = (int)strlen(base);
+    }
+    if (frame < 0)
         snprintf(out_name, size, "%.*s.exr", stem, base);
+    else
+        snprintf(out_name, size, "%.*s.%04d.exr", stem, base, frame);
 }
 
 static ag_status list_displays(ag_context *context)
@@ -285,85 +290,26 @@ static ag_status run_in_context(options *o, int frame, progress *told, ag_contex
     return status;
 }
 
-/* The definitions of one frame: its number in their values, and as "frame" where that is not defined. */
-static bool define_frame(const options *o, int frame, options *one)
-{
-    char number[16];
-    snprintf(number, sizeof number, "%d", frame);
-    one->definition_count = 0;
-    one->definitions = calloc(o->definition_count + 1, sizeof *one->definitions);
-    bool is_whole = one->definitions != NULL, is_named = false;
-    for (size_t i = 0; is_whole && i < o->definition_count; i++) {
-        const ag_definition *from = &o->definitions[i];
-        ag_definition *to = &one->definitions[one->definition_count++];
-        is_named = is_named || strcmp(from->name, "frame") == 0;
-        *to = (ag_definition){.name = strdup(from->name), .value = frames_name(from->value, frame)};
-        is_whole = to->name && to->value;
-    }
-    if (is_whole && !is_named) {
-        ag_definition *to = &one->definitions[one->definition_count++];
-        *to = (ag_definition){.name = strdup("frame"), .value = strdup(number), .is_optional = true};
-        is_whole = to->name && to->value;
-    }
-    return is_whole;
-}
-
-/* The options of one frame: its number in all names. The strings are to be freed. */
-static bool name_frame(const options *o, int frame, options *out_one)
-{
-    options one = *o;
-    bool is_whole = define_frame(o, frame, &one);
-    one.outfiles = calloc((size_t)o->outfile_count + 1, sizeof *one.outfiles);
-    for (int i = 0; one.outfiles && i < o->outfile_count; i++)
-        is_whole = (one.outfiles[i] = frames_name(o->outfiles[i], frame)) && is_whole;
-    one.scene = frames_name(o->scene, frame);
-    one.seed_pattern = o->seed_pattern ? frames_name(o->seed_pattern, frame) : NULL;
-    one.frame = frame;
-    one.stats = o->stats ? frames_name(o->stats, frame) : NULL;
-    one.photons_file = o->photons_file ? frames_name(o->photons_file, frame) : NULL;
-    one.render.photon_map_file = o->render.photon_map_file ? frames_name(o->render.photon_map_file, frame) : NULL;
-    one.asked.sky_file = o->asked.sky_file ? frames_name(o->asked.sky_file, frame) : NULL;
-    *out_one = one;
-    return is_whole && one.outfiles && one.scene && (one.stats || !o->stats) &&
-           (one.photons_file || !o->photons_file) && (one.seed_pattern || !o->seed_pattern) &&
-           (one.render.photon_map_file || !o->render.photon_map_file) && (one.asked.sky_file || !o->asked.sky_file);
-}
-
-static void free_frame(options *one, int outfile_count)
-{
-    for (int i = 0; one->outfiles && i < outfile_count; i++)
-        free((void *)(uintptr_t)one->outfiles[i]);
-    free((void *)one->outfiles);
-    free((void *)(uintptr_t)one->scene);
-    free((void *)(uintptr_t)one->stats);
-    free((void *)(uintptr_t)one->photons_file);
-    free((void *)(uintptr_t)one->render.photon_map_file);
-    free((void *)(uintptr_t)one->asked.sky_file);
-    free((void *)(uintptr_t)one->seed_pattern);
-    for (size_t i = 0; i < one->definition_count; i++)
-        options_free_definition(&one->definitions[i]);
-    free(one->definitions);
-}
-
 static ag_status run_frame(options *o, int index, progress *told, ag_context **in_out_last)
 {
     const int frame = o->frames.numbers[index];
     options one;
     ag_status status = AG_ERROR_MEMORY;
-    const bool is_named = name_frame(o, frame, &one);
+    const bool is_named = frame_options_make(o, frame, &one);
     progress_begin_frame(told, index, o->frames.count, frame);
     if (is_named) {
         if (o->verbosity >= 1)
             fprintf(stderr, "afterglow: frame %d: %s\n", frame, one.scene);
         status = run_in_context(&one, frame, told, in_out_last);
     }
-    free_frame(&one, o->outfile_count);
+    frame_options_reset(&one, o->outfile_count);
     return status;
 }
 
 /* Renders one frame after the other; the first that fails, or that who watches stops, ends the run. */
 static ag_status run_frames(options *o, progress *told, ag_context **in_out_last)
 {
+    AG_TRY(file_conflicts_of_frames(o));
     for (int i = 0; i < o->frames.count; i++) {
         AG_TRY(run_frame(o, i, told, in_out_last));
         if (signals_stop() && i + 1 < o->frames.count)

@@ -55,12 +55,13 @@ typedef struct options {
     uint64_t memory_limit;      /* bytes of the process; 0: none */
     ag_definition *definitions; /* owned, as are its strings */
     size_t definition_count;
-    bool seed_per_frame;        /* the frame's number is added to the seed */
-    const char *seed_pattern;   /* the seed, with a placeholder for the frame's number; NULL: there is none */
-    int frame;                  /* of one of several pictures, its number */
-    frame_list frames;          /* none: one picture, whose names are as they stand */
-    int tile_index, tile_count; /* from 1 on; 0: the whole */
-    double time_limit, begun;   /* s, 0: none; from when it counts, see passes_seconds */
+    bool seed_per_frame;                 /* the frame's number is added to the seed */
+    const char *seed_pattern;            /* the seed, with a placeholder for the frame's number; NULL: there is none */
+    int frame;                           /* of one of several pictures, its number */
+    frame_list frames;                   /* none: one picture, whose names are as they stand */
+    const struct options *of_all_frames; /* of one frame's options those that they were made of, borrowed; else NULL */
+    int tile_index, tile_count;          /* from 1 on; 0: the whole */
+    double time_limit, begun;            /* s, 0: none; from when it counts, see passes_seconds */
     progress_style progress;
     picture_form picture_form;
     int verbosity; /* -1 quiet, 0, 1 verbose, 2 debug */

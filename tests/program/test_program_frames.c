@@ -42,6 +42,40 @@ static void test_frames(void **state)
                "'a.exr' has no placeholder for the frame's number");
 }
 
+/* What a frame would write over is refused before the first one: what another frame reads or has written. */
+static void test_frames_in_each_others_files(void **state)
+{
+    (void)state;
+    write_text("sky.2.exr", "a sky");
+    expect_end(ARGUMENTS(TINY, "--frames=1-3", "--sky=sky.2.exr", "-o", "sky.#.exr", BOX), 2,
+               "'sky.2.exr' is to be written in frame 2, and read in frame 1");
+    expect_end(ARGUMENTS(TINY, "--frames=2-3", "--sky=sky.0%d.exr", "-o", "sky.0#.exr", BOX), 2, "in frame");
+    expect_end(ARGUMENTS(TINY, "--frames=1-11x5,1", "-o", "a%d.exr", "-o", "a1%d.exr", BOX), 2,
+               "' is to be written in frame 1, and written in frame 11, as 'a11.exr");
+    SCENE_WITH("floor.pbrt", "WorldBegin",
+               "WorldBegin Texture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"b.3.exr\"");
+    picture p = RENDER(BOX, TINY);
+    picture_reset(&p);
+    expect_end(ARGUMENTS(TINY, "-o", "b.3.exr", BOX), 0, "");
+    expect_end(ARGUMENTS(TINY, "--frames=1-3", "-o", "b.#.exr", "floor.pbrt"), 2, "'b.3.exr' is a file of the scene");
+    expect_text(in_folder("sky.2.exr"), "a sky");
+    assert_int_not_equal(access(in_folder("sky.1.exr"), F_OK), 0);
+    assert_int_not_equal(access(in_folder("b.1.exr"), F_OK), 0);
+    /* one map for all frames is no conflict */
+    expect_end(ARGUMENTS("--size=8x8", "--spp=1", "--photons=2000", "--frames=1-2", "--photon-map=all.map", "-o",
+                         "c.#.exr", BOX),
+               0, "");
+}
+
+/* Frames without a name for their pictures have one each. */
+static void test_frames_without_names(void **state)
+{
+    (void)state;
+    SCENE_WITH("floor.pbrt", "Film \"rgb\"", "Film \"rgb\" ");
+    expect_end(ARGUMENTS(TINY, "--frames=7-8", "floor.pbrt"), 0, "");
+    expect_listing("floor.0007.exr floor.0008.exr floor.pbrt");
+}
+
 static void test_no_clobber(void **state)
 {
     (void)state;
@@ -135,6 +169,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         TEST_IN_FOLDER(test_frames),
+        TEST_IN_FOLDER(test_frames_in_each_others_files),
+        TEST_IN_FOLDER(test_frames_without_names),
         TEST_IN_FOLDER(test_no_clobber),
         TEST_IN_FOLDER(test_tiles),
         TEST_IN_FOLDER(test_progress_for_farms),
