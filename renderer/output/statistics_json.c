@@ -41,11 +41,12 @@ static json_t *prediction_to_json(const ag_prediction *p)
     for (int i = 0; i < AG_PHASE_COUNT; i++)
         json_object_set_new(times, ag_phase_name((ag_phase)i), json_real(p->time_s[i]));
     json_object_set_new(times, "total", json_real(p->time_total_s));
-    return json_pack("{s:{s:o, s:o, s:o, s:o, s:o, s:o, s:o}, s:o, s:f, s:f}", "memory", "peak_bytes",
+    return json_pack("{s:{s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o}, s:o, s:f, s:f}", "memory", "peak_bytes",
                      count(p->memory_peak_bytes), "scene_bytes", count(p->memory_scene_bytes), "photon_bytes",
                      count(p->memory_photon_bytes), "thread_bytes", count(p->memory_thread_bytes), "film_bytes",
                      count(p->memory_film_bytes), "host_bytes", count(p->memory_host_bytes), "file_bytes",
-                     count(p->memory_file_bytes), "time_s", times, "cpu_s", p->cpu_s, "samples_per_pixel",
+                     count(p->memory_file_bytes), "needed_bytes", count(p->memory_needed_bytes), "optional_bytes",
+                     count(p->memory_optional_bytes), "time_s", times, "cpu_s", p->cpu_s, "samples_per_pixel",
                      p->samples_per_pixel);
 }
 

@@ -37,6 +37,10 @@ static void test_dry_run(void **state)
         assert_true(number_of(stats, "prediction.time_s.total") > number_of(stats, "prediction.time_s.render"));
         assert_true((number_of(stats, "prediction.time_s.precompute") > 0.0) == (i == 1));
         assert_true(number_of(stats, "prediction.cpu_s") > 0.0);
+        assert_true(number_of(stats, "prediction.memory.optional_bytes") <=
+                    number_of(stats, "prediction.memory.needed_bytes"));
+        assert_true(number_of(stats, "prediction.memory.needed_bytes") <=
+                    number_of(stats, "prediction.memory.peak_bytes"));
         assert_true(number_of(stats, "prediction.samples_per_pixel") == 20.0);
         assert_int_equal(stats_integer(stats, "rays.camera"), 0); /* of the picture */
         json_decref(stats);
