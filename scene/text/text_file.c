@@ -28,6 +28,12 @@ size_t text_file_max_bytes(void)
     return half < MAX_BYTES ? half : MAX_BYTES;
 }
 
+uint64_t text_file_max_unpacked_bytes(uint64_t packed_bytes)
+{
+    static const uint64_t ALWAYS_BYTES = (uint64_t)256 << 20, RATIO = 256;
+    return packed_bytes > ALWAYS_BYTES / RATIO ? packed_bytes * RATIO : ALWAYS_BYTES;
+}
+
 static ag_status refuse_size(char *error, size_t error_size)
 {
     snprintf(error, error_size, "it is larger than %zu MiB, which is the most", text_file_max_bytes() >> 20);
@@ -83,7 +89,7 @@ static ag_status open_standard_input(const run_context *run, char *error, size_t
     return result;
 }
 
-/* Reads until the end; *file holds what there is, also on failure. */
+/* expected_bytes: the file's size. Reads until the end; *file holds what there is, also on failure. */
 static ag_status read_all(const run_context *run, gzFile stream, size_t expected_bytes, char *error, size_t error_size,
                           text_file *file)
 {
@@ -121,6 +127,11 @@ static ag_status read_all(const run_context *run, gzFile stream, size_t expected
         file->size += (size_t)count;
         if (file->size > text_file_max_bytes())
             return refuse_size(error, error_size);
+        if (!gzdirect(stream) && file->size > text_file_max_unpacked_bytes(expected_bytes)) {
+            snprintf(error, error_size, "the gzip file holds more than %llu MiB, which is the most in one of %zu bytes",
+                     (unsigned long long)text_file_max_unpacked_bytes(expected_bytes) >> 20, expected_bytes);
+            return AG_ERROR_INPUT;
+        }
     }
     file->text[file->size] = '\0';
     return AG_OK;

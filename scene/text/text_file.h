@@ -18,6 +18,10 @@ typedef struct text_file {
  * hold any amount, and a device or a pipe does not end. */
 size_t text_file_max_bytes(void);
 
+/* A gzip file holds at most 256 MiB, or 256 times its own size where that is more: text and meshes seldom pack to a
+ * twentieth, and what packs to a thousandth would fill the memory. */
+uint64_t text_file_max_unpacked_bytes(uint64_t packed_bytes);
+
 /* path "-" is standard input, which may be anything; all else is a regular file (input_file.h). run may be NULL; where
  * it is cancelled the reading ends, also while it waits for standard input. On failure *out_file is zeroed and error
  * (of error_size bytes) says why, without the path. Errors: AG_ERROR_INPUT, AG_ERROR_MEMORY, AG_CANCELLED. */

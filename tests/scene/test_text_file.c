@@ -130,6 +130,23 @@ static void what_cannot_be_read_is_told(void **state)
     assert_int_equal(strncmp(error, "the gzip file is damaged (", 26), 0);
 }
 
+/* What unpacks to a thousand times its size is refused long before it fills the memory. */
+static void gzip_files_that_hold_too_much_are_refused(void **state)
+{
+    (void)state;
+    static char zeros[1 << 20];
+    gzFile f = gzopen(path_of("much.gz"), "wb9");
+    assert_non_null(f);
+    for (int i = 0; i < 300; i++)
+        assert_int_equal(gzwrite(f, zeros, sizeof zeros), (int)sizeof zeros);
+    assert_int_equal(gzclose(f), Z_OK);
+    text_file file;
+    assert_int_equal(text_file_read(NULL, path_of("much.gz"), error, sizeof error, &file), AG_ERROR_INPUT);
+    assert_non_null(strstr(error, "the gzip file holds more than 256 MiB, which is the most in one of "));
+    assert_true(text_file_max_unpacked_bytes(100) == 256 << 20);
+    assert_true(text_file_max_unpacked_bytes((uint64_t)1 << 30) == (uint64_t)1 << 38);
+}
+
 static int make_directory(void **state)
 {
     (void)state;
@@ -139,8 +156,8 @@ static int make_directory(void **state)
 static int remove_directory(void **state)
 {
     (void)state;
-    static const char *const NAMES[] = {"plain", "packed.gz", "packed.txt", "empty", "zero",
-                                        "stdin", "whole.gz",  "cut.gz",     "bad.gz"};
+    static const char *const NAMES[] = {"plain", "packed.gz", "packed.txt", "empty",  "zero",
+                                        "stdin", "whole.gz",  "cut.gz",     "bad.gz", "much.gz"};
     for (size_t i = 0; i < sizeof NAMES / sizeof *NAMES; i++)
         remove(path_of(NAMES[i]));
     return rmdir(directory);
@@ -150,6 +167,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(plain_and_gzip_are_read_alike),
+        cmocka_unit_test(gzip_files_that_hold_too_much_are_refused),
         cmocka_unit_test(standard_input_is_read),
         cmocka_unit_test(what_cannot_be_read_is_told),
     };
