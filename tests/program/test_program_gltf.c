@@ -261,7 +261,7 @@ static void errors_end_the_program(void **state)
     write_scene("{" GLTF_ASSET "'nodes': [{'mesh': 3}]}");
     program_run run = program_execute(NULL, ARGUMENTS("--progress=none", "-o", "x.exr", "t.gltf"));
     expect_exit(&run, 1);
-    assert_string_equal(run.err, "t.gltf: error: nodes[0].mesh: 3 is out of range: there are 0 meshes\n");
+    assert_string_equal(run.err, "t.gltf:1:50: error: nodes[0].mesh: 3 is out of range: there are 0 meshes\n");
     program_run_reset(&run);
     write_file("t.glb", "glTF\2\0\0\0\377\0\0\0", 12);
     run = program_execute(NULL, ARGUMENTS("-o", "x.exr", "t.glb"));

@@ -137,7 +137,7 @@ static void syntax_errors(void **state)
                       "t.gltf:1:28: error: '}' expected near end of file");
     gltf_expect_error("{'asset': {'version': '2.0'}} more", AG_ERROR_SCENE, "end of file expected");
     gltf_expect_error("{'a': 1e999}", AG_ERROR_SCENE, "t.gltf:1:11: error: real number overflow");
-    gltf_expect_error("[]", AG_ERROR_SCENE, "t.gltf: error: the document: should be an object");
+    gltf_expect_error("[]", AG_ERROR_SCENE, "t.gltf:1:1: error: the document: should be an object");
     r = gltf_read_file("none.gltf");
     assert_int_equal(r.status, AG_ERROR_INPUT);
     expect_said(&r, AG_LOG_ERROR, "none.gltf: error: cannot read the file: No such file or directory");
@@ -147,7 +147,7 @@ static void syntax_errors(void **state)
 static void versions_and_extensions(void **state)
 {
     (void)state;
-    gltf_expect_error("{}", AG_ERROR_SCENE, "t.gltf: error: asset: is missing");
+    gltf_expect_error("{}", AG_ERROR_SCENE, "t.gltf:1:1: error: asset: is missing");
     gltf_expect_error("{'asset': 2}", AG_ERROR_SCENE, "asset: should be an object, not an integer");
     gltf_expect_error("{'asset': {}}", AG_ERROR_SCENE, "asset.version: is missing");
     gltf_expect_error("{'asset': {'version': 2.0}}", AG_ERROR_SCENE, "asset.version: should be a string, not a number");
@@ -232,6 +232,22 @@ static void uris(void **state)
     };
     for (size_t i = 0; i < sizeof WRONG / sizeof *WRONG; i++)
         gltf_expect_error(with_buffer(WRONG[i].buffer), WRONG[i].status, WRONG[i].error);
+}
+
+/* Errors stand at the line and column of the value, or of what it is missing from. */
+static void errors_name_line_and_column(void **state)
+{
+    (void)state;
+    gltf_expect_error("{\n  'asset': {'version': '2.0'},\n  'x': [{'nodes': 1}, \"}\", 1e3, null],\n"
+                      "  'nodes': [{}, {\n\t'mesh': 3}]}",
+                      AG_ERROR_SCENE, "t.gltf:5:10: error: nodes[1].mesh: 3 is out of range");
+    gltf_expect_error(
+        "{'asset': {'version': '2.0'},\n 'nodes': [{'name': '\xc3\xa4\\\\', 'rotation': [0, 0, 'x', 1]}]}",
+        AG_ERROR_SCENE, "t.gltf:2:47: error: nodes[0].rotation[2]: should be a number");
+    gltf_expect_error("{'asset': {'version': '2.0'},\n 'meshes': [ {'primitives': [ {}]}],\n 'nodes': [{'mesh': 0}]}",
+                      AG_ERROR_SCENE, "t.gltf:2:31: error: meshes[0].primitives[0].attributes: is missing");
+    gltf_expect_error("{'asset': {'version': '1.0'}, 'asset':\n {'version': '3.0'}}", AG_ERROR_SCENE,
+                      "t.gltf:2:2: error: asset: it is glTF 3.0");
 }
 
 /* A document with most of what is read in it, but for textures: pictures would take most of the time. */
@@ -380,6 +396,7 @@ static void cancelled(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        TEST_IN_FOLDER(errors_name_line_and_column),
         TEST_IN_FOLDER(minimal_document),
         TEST_IN_FOLDER(binary_file),
         TEST_IN_FOLDER(binary_file_errors),

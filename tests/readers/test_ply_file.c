@@ -255,20 +255,21 @@ static void errors_name_line_and_cause(void **state)
     check_error(ASCII_HEAD VERTEX(3) "element face 1\nproperty int vertex_indices\nend_header\n",
                 ":9: faces have no list \"vertex_indices\" or \"vertex_index\"");
     check_error(ASCII_HEAD VERTEX(2000000000) FACE(1) "end_header\n", ":9: 2000000000 vertices are too many");
-    check_error(HEAD "0 0 0\n1 nan 0\n0 1 0\n3 0 1 2\n", ":11: vertex 1: \"nan\" is no number");
-    check_error(HEAD "0 0 0\n1 -inf 0\n0 1 0\n3 0 1 2\n", ":11: vertex 1: \"-inf\" is no number");
-    check_error(HEAD "0 0 0\n1 0 1e39\n0 1 0\n3 0 1 2\n", ":11: vertex 1: z is no finite number");
-    check_error(HEAD "0 0 0\n1 0 0,5\n0 1 0\n3 0 1 2\n", ":11: vertex 1: \"0,5\" is no number");
-    check_error(HEAD "0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n", ":13: face 0: index 3 is out of range, there are 3 vertices");
-    check_error(HEAD "0 0 0\n1 0 0\n0 1 0\n3 0 1 -1\n", ":13: face 0: index -1 is out of range, there are 3 vertices");
+    check_error(HEAD "0 0 0\n1 nan 0\n0 1 0\n3 0 1 2\n", ":11:3: vertex 1: \"nan\" is no number");
+    check_error(HEAD "0 0 0\n1 -inf 0\n0 1 0\n3 0 1 2\n", ":11:3: vertex 1: \"-inf\" is no number");
+    check_error(HEAD "0 0 0\n1 0 1e39\n0 1 0\n3 0 1 2\n", ":11:5: vertex 1: z is no finite number");
+    check_error(HEAD "0 0 0\n1 0 0,5\n0 1 0\n3 0 1 2\n", ":11:5: vertex 1: \"0,5\" is no number");
+    check_error(HEAD "0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n", ":13:7: face 0: index 3 is out of range, there are 3 vertices");
+    check_error(HEAD "0 0 0\n1 0 0\n0 1 0\n3 0 1 -1\n",
+                ":13:7: face 0: index -1 is out of range, there are 3 vertices");
     check_error(HEAD "0 0 0\n1 0 0\n0 1 0\n3 0 1.5 2\n",
-                ":13: face 0: index 1.5 is out of range, there are 3 vertices");
-    check_error(HEAD "0 0 0\n1 0 0\n0 1 0\n-3 0 1 2\n", ":13: face 0: a list cannot have -3 entries");
-    check_error(HEAD "0 0 0\n1 0 0\n0 1 0\n3 0 1 \n", ":14: face 0: the file ends here");
+                ":13:5: face 0: index 1.5 is out of range, there are 3 vertices");
+    check_error(HEAD "0 0 0\n1 0 0\n0 1 0\n-3 0 1 2\n", ":13:1: face 0: a list cannot have -3 entries");
+    check_error(HEAD "0 0 0\n1 0 0\n0 1 0\n3 0 1 \n", ":14:1: face 0: the file ends here");
     check_error(HEAD "0 0 0\n1 0 0\n",
                 ":3: the header promises 3 of element \"vertex\", but the file is cut short: it has "
                 "room for 2");
-    check_error(HEAD "0 0 0\n1 0 0\n0 1 0\n", ":13: face 0: the file ends here");
+    check_error(HEAD "0 0 0\n1 0 0\n0 1 0\n", ":13:1: face 0: the file ends here");
 }
 
 static void binary_errors_name_element_and_byte(void **state)

@@ -50,6 +50,7 @@ static ag_status parse_json(gltf_reader *r, const char *json, size_t size, bool 
         return AG_ERROR_SCENE;
     }
     r->document = (gltf_value){r->root, NULL, NULL, 0};
+    r->is_text = !is_chunk;
     return json_is_object(r->root) ? AG_OK : gltf_error(r, &r->document, "should be an object");
 }
 

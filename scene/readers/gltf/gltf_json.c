@@ -51,7 +51,7 @@ ag_status gltf_error(const gltf_reader *r, const gltf_value *at, const char *for
     vsnprintf(message, sizeof message, format, arguments);
     va_end(arguments);
     path_of(at, path, sizeof path);
-    log_at(r->run->log, AG_LOG_ERROR, r->where, "%s: %s", path, message);
+    log_at(r->run->log, AG_LOG_ERROR, gltf_position(r, at), "%s: %s", path, message);
     return AG_ERROR_SCENE;
 }
 

@@ -96,6 +96,7 @@ typedef struct gltf_reader {
     char *directory;     /* of the file, with its slash, or "" */
 
     char *text;       /* the whole file; owned */
+    bool is_text;     /* which is the JSON itself */
     gltf_bytes chunk; /* a binary file's BIN chunk, in text; data NULL: there is none */
     json_t *root;
     gltf_value document;
@@ -116,6 +117,10 @@ typedef struct gltf_reader {
     size_t triangles_read, triangles_dropped;
     uint32_t glow_count; /* of the scene's lights: surfaces that only glow */
 } gltf_reader;
+
+/* gltf_position.c: line and column of a value; of one that is missing, those of what it is missing from. Of a binary
+ * file, the file alone. */
+file_location gltf_position(const gltf_reader *r, const gltf_value *v);
 
 /* gltf_json.c: values by key and index. Each function that fails tells the error with the value's path. */
 

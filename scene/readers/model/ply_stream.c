@@ -5,6 +5,7 @@
 
 #include "text/decimal.h"
 #include "text/input_file.h"
+#include "text/text_file.h"
 
 #include <errno.h>
 #include <stdarg.h>
@@ -50,6 +51,8 @@ ag_status ply_stream_open(const char *path, const run_context *run, char *error,
     gzbuffer(s->file, ZLIB_BYTES);
     if (S_ISREG(status.st_mode) && gzdirect(s->file))
         s->size = (uint64_t)status.st_size;
+    else
+        s->packed = (uint64_t)status.st_size;
     return AG_OK;
 }
 
@@ -70,8 +73,8 @@ ag_status ply_fail(ply_stream *s, const char *format, ...)
     if (!s->element)
         snprintf(s->error, s->error_size, "%s:%llu: %s", s->path, (unsigned long long)s->line, message);
     else if (s->format == PLY_ASCII)
-        snprintf(s->error, s->error_size, "%s:%llu: %s %llu: %s", s->path, (unsigned long long)s->line, s->element,
-                 index, message);
+        snprintf(s->error, s->error_size, "%s:%llu:%llu: %s %llu: %s", s->path, (unsigned long long)s->line,
+                 (unsigned long long)(s->offset + s->mark + 1 - s->line_begin), s->element, index, message);
     else
         snprintf(s->error, s->error_size, "%s: %s %llu (byte %llu): %s", s->path, s->element, index,
                  (unsigned long long)(s->offset + s->mark), message);
@@ -99,6 +102,13 @@ ag_status ply_fill(ply_stream *s, size_t wanted)
                 return fail_reading(s, strerror(errno));
             return fail_reading(s, code == Z_BUF_ERROR ? "the gzip file is cut short" : text);
         }
+        if (s->packed > 0 && s->offset + s->end > text_file_max_unpacked_bytes(s->packed)) {
+            char reason[128];
+            snprintf(reason, sizeof reason,
+                     "the gzip file holds more than %llu MiB, which is the most in one of its size",
+                     (unsigned long long)text_file_max_unpacked_bytes(s->packed) >> 20);
+            return fail_reading(s, reason);
+        }
         s->is_at_end = count == 0;
         s->end += (size_t)count;
     }
@@ -123,6 +133,7 @@ ag_status ply_read_line(ply_stream *s, char *line, size_t size, bool *out_is_end
     if (length > 0 && line[length - 1] == '\r')
         length--;
     line[length] = '\0';
+    s->line_begin = s->offset + s->next;
     return AG_OK;
 }
 
@@ -170,7 +181,10 @@ static ag_status read_decimal(ply_stream *s, double *out_value)
     for (;;) {
         AG_TRY(ply_fill(s, NUMBER_BYTES));
         for (; s->next < s->end && is_space(s->bytes[s->next]); s->next++)
-            s->line += (char)s->bytes[s->next] == s->line_end;
+            if ((char)s->bytes[s->next] == s->line_end) {
+                s->line++;
+                s->line_begin = s->offset + s->next + 1;
+            }
         if (s->next < s->end || s->is_at_end)
             break;
     }

@@ -34,10 +34,12 @@ typedef struct ply_stream {
     size_t mark;     /* of the value read last, for messages */
     uint64_t offset; /* of bytes[0] in the unpacked file */
     uint64_t size;   /* of a plain file; UINT64_MAX where it is not known beforehand */
+    uint64_t packed; /* of a gzip file, its own size; 0: it is a plain one */
     bool is_at_end;  /* nothing comes behind end */
     ply_format format;
     char line_end;       /* '\n', or '\r' in files of the old Macintosh */
     uint64_t line;       /* from 1; of next, in the header and in ascii files */
+    uint64_t line_begin; /* of that line in the unpacked file, in the body of ascii files */
     const char *path;    /* borrowed */
     const char *element; /* the kind of element that is read, borrowed; NULL in the header */
     uint64_t element_index;
@@ -51,8 +53,8 @@ ag_status ply_stream_open(const char *path, const run_context *run, char *error,
                           ply_stream *out_stream);
 void ply_stream_close(ply_stream *s);
 
-/* Writes "PATH:LINE: message", in a file's body "PATH:LINE: vertex 7: message" or, where it is binary, "PATH: vertex 7
- * (byte 1234): message"; elements and bytes count from 0, as indices do. Returns AG_ERROR_INPUT. */
+/* Writes "PATH:LINE: message", in a file's body "PATH:LINE:COLUMN: vertex 7: message" or, where it is binary, "PATH:
+ * vertex 7 (byte 1234): message"; elements and bytes count from 0, as indices do. Returns AG_ERROR_INPUT. */
 ag_status ply_fail(ply_stream *s, const char *format, ...) AG_PRINTF(2, 3);
 
 /* Sees to it that `wanted` bytes (64 KiB at most) lie at next, or all that there are. */
