@@ -167,19 +167,37 @@ static void lights_are_as_bright_as_the_file_says(void **state)
 }
 
 /* Collada by Blender: colours are W or W/m^2, and <extra> says what is an area and how a spot ends. */
-static reading blenders(const char *kind, const char *words, const char *extra)
+static reading blenders_of_unit(const char *unit, const char *kind, const char *words, const char *extra)
 {
     char text[8192];
     snprintf(
         text, sizeof text,
-        COLLADA("<contributor><authoring_tool>Blender 3.4.1</authoring_tool></contributor>\n<up_axis>Y_UP</up_axis>",
-                "\n<light id=\"lam-light\" name=\"lam\">\n<technique_common><%s><color>50 25 0"
-                "</color>%s</%s></technique_common>\n<extra><technique profile=\"blender\">\n%s"
-                "</technique></extra></light>\n",
-                COLLADA_FLOOR "\n<node id=\"lamn\" name=\"lamn\">\n<translate>1 2 3</translate>"
-                              "<instance_light url=\"#lam-light\"/></node>\n"),
-        kind, words, kind, extra);
+        COLLADA(
+            "<contributor><authoring_tool>Blender 3.4.1</authoring_tool></contributor>\n%s\n<up_axis>Y_UP</up_axis>",
+            "\n<light id=\"lam-light\" name=\"lam\">\n<technique_common><%s><color>50 25 0"
+            "</color>%s</%s></technique_common>\n<extra><technique profile=\"blender\">\n%s"
+            "</technique></extra></light>\n",
+            COLLADA_FLOOR "\n<node id=\"lamn\" name=\"lamn\">\n<translate>1 2 3</translate>"
+                          "<instance_light url=\"#lam-light\"/></node>\n"),
+        unit, kind, words, kind, extra);
     return model_quietly("a.dae", text);
+}
+
+static reading blenders(const char *kind, const char *words, const char *extra)
+{
+    return blenders_of_unit("", kind, words, extra);
+}
+
+/* A scene in centimetres is read in metres; its light looks the same. */
+static void lamps_of_blenders_heed_the_unit(void **state)
+{
+    (void)state;
+    reading r = blenders_of_unit("<unit name=\"centimeter\" meter=\"0.01\"/>", "point",
+                                 "<quadratic_attenuation>0.0016</quadratic_attenuation>",
+                                 "<type sid=\"type\" type=\"int\">0</type>\n");
+    assert_near(r.scene->lights[0].as.point.position.z, 0.03, 1e-6);
+    assert_rgb(r.scene->lights[0].as.point.intensity, 50e-4 / (4 * PI_D), 25e-4 / (4 * PI_D), 0, 1e-8);
+    reading_destroy(&r);
 }
 
 static void lamps_of_blenders_are_in_watts(void **state)
@@ -314,6 +332,39 @@ static void lamps_of_blenders_fbx_are_in_watts(void **state)
     reading_destroy(&r);
 }
 
+/* The scale of a camera at the root tells the length of Blender's unit. The picture of a camera with a sensor fit of
+ * "Auto", Blender's default, sees along its longer side what the file says of its width. */
+static void units_and_fields_of_blenders_fbx(void **state)
+{
+    (void)state;
+#define FBX_CAMERA(scale, width, height)                                                                               \
+    "Model: 5, \"Model::cam\", \"Camera\" {\nVersion: 232\nProperties70: {\nP: \"Lcl Scaling\", \"Lcl Scaling\", "     \
+    "\"\", \"A\"," scale "," scale "," scale "\n}\n}\nNodeAttribute: 6, \"NodeAttribute::cam\", \"Camera\" {\n"        \
+    "TypeFlags: \"Camera\"\nProperties70: {\nP: \"AspectWidth\", \"double\", \"Number\", \"\"," width "\n"             \
+    "P: \"AspectHeight\", \"double\", \"Number\", \"\"," height "\n"                                                   \
+    "P: \"FieldOfView\", \"FieldOfView\", \"\", \"A\",90\n}\n}\n}\nConnections: {\nC: \"OO\",5,0\nC: \"OO\",6,5\n"
+    static const char LAMP[] = FBX_LAMP("1", "0", "");
+    static const struct {
+        const char *camera;
+        double per_watt, fov_degrees;
+    } CASES[] = {{FBX_CAMERA("1", "64", "36"), 1, 58.7155}, /* 2 atan(36 / 64) */
+                 {FBX_CAMERA("100", "36", "64"), 1e4, 58.7155},
+                 {FBX_CAMERA("2.54", "36", "36"), 1e4, 90}}; /* the lamp's node is not scaled: they do not agree */
+    for (size_t k = 0; k < sizeof CASES / sizeof *CASES; k++) {
+        char text[8192];
+        const char *behind = strstr(LAMP, "}\nConnections: {\n");
+        assert_non_null(behind);
+        snprintf(text, sizeof text, "%.*s%s%s", (int)(behind - LAMP), LAMP, CASES[k].camera,
+                 behind + strlen("}\nConnections: {\n"));
+        reading r = model_quietly("a.fbx", text);
+        assert_int_equal(r.status, AG_OK);
+        assert_near(r.scene->camera.fov_degrees, CASES[k].fov_degrees, 0.01);
+        assert_near(r.scene->lights[0].as.point.intensity.r, CASES[k].per_watt * 50 / (4 * PI_D),
+                    1e-4 * CASES[k].per_watt);
+        reading_destroy(&r);
+    }
+}
+
 static void what_assimp_refuses_is_an_error(void **state)
 {
     (void)state;
@@ -391,6 +442,8 @@ int main(void)
         TEST_IN_FOLDER(lights_are_as_bright_as_the_file_says),
         TEST_IN_FOLDER(lamps_of_blenders_are_in_watts),
         TEST_IN_FOLDER(principled_surfaces_of_blenders_shine),
+        TEST_IN_FOLDER(lamps_of_blenders_heed_the_unit),
+        TEST_IN_FOLDER(units_and_fields_of_blenders_fbx),
         TEST_IN_FOLDER(lamps_of_blenders_fbx_are_in_watts),
         TEST_IN_FOLDER(what_assimp_refuses_is_an_error),
         TEST_IN_FOLDER(vertices_are_checked_here),

@@ -111,15 +111,27 @@ static bool take_node_line(const library *l, const char *line, const char *node,
     return true;
 }
 
+/* Takes the length of Blender's unit from the line of the asset that says it. */
+static void take_unit(const char *line, float *metres)
+{
+    char text[64], *end;
+    if (!strstr(line, "<unit ") || !get_attribute(line, " meter=", text, sizeof text))
+        return;
+    const float value = strtof(text, &end);
+    if (end != text && value > 1e-6f && value < 1e6f)
+        *metres = value;
+}
+
 void blender_lamps_read(const char *path, blender_lamps *out_lamps)
 {
     library l = {0};
     char *line = NULL, node[IMPORT_NAME_SIZE] = "";
     size_t size = 0;
     bool is_library = false, is_sound = true;
-    *out_lamps = (blender_lamps){0};
+    *out_lamps = (blender_lamps){.metres_per_unit = 1.0f};
     FILE *file = fopen(path, "r");
     while (file && is_sound && getline(&line, &size, file) >= 0) {
+        take_unit(line, &out_lamps->metres_per_unit);
         if (strstr(line, "<library_lights>"))
             is_library = true;
         else if (strstr(line, "</library_lights>"))

@@ -11,7 +11,9 @@
  *                 cosine, by "blend";
  *                 before 3.5 times the
  *                 cosine itself
- *   lengths       m                   100 / UnitScaleFactor units    m
+ *   lengths       Blender's units     100 / UnitScaleFactor units;   <unit meter>: m to the unit, as
+ *                                     where the scene's own unit is  assimp hands it over
+ *                                     no m, the scale of nodes
  *
  * Flow: mesh_import_assimp -> [here]. Threads: plain data. */
 #ifndef AFTERGLOW_BLENDER_LAMPS_H
@@ -30,6 +32,7 @@ typedef struct blender_lamp {
 typedef struct blender_lamps {
     blender_lamp *items; /* [count], owned */
     size_t count;
+    float metres_per_unit; /* > 0 */
 } blender_lamps;
 
 /* Reads the <extra> of lamps, line by line as Blender writes them; what it does not know is not there. Runs in the

@@ -10,6 +10,17 @@
 #include <string.h>
 #include <strings.h>
 
+/* Blender's files say how much of a landscape picture's width is seen, whatever the picture; unless its "Sensor Fit" is
+ * set, which they do not say, that is the height of one that is higher than wide. */
+static void fit_longer_side(import_camera *c)
+{
+    const double aspect = (double)c->aspect;
+    if (!(aspect > 0.0 && aspect < 1.0))
+        return;
+    c->horizontal_fov = (float)(2.0 * atan(tan(0.5 * (double)c->horizontal_fov) * aspect));
+    c->orthographic_half_width = (float)((double)c->orthographic_half_width * aspect);
+}
+
 void assimp_write_camera(assimp_writer *w, const struct aiCamera *c, assimp_matrix root)
 {
     import_camera out;
@@ -32,6 +43,8 @@ void assimp_write_camera(assimp_writer *w, const struct aiCamera *c, assimp_matr
     out.horizontal_fov = c->mHorizontalFOV;
     out.aspect = c->mAspect;
     out.orthographic_half_width = c->mOrthographicWidth;
+    if (w->is_blenders)
+        fit_longer_side(&out);
     memcpy(out.shift, w->shifts.of_all, sizeof out.shift);
     assimp_write_record(w, IMPORT_RECORD_CAMERA, &out, sizeof out);
     if (w->shifts.differ) {
@@ -63,6 +76,38 @@ static bool has_dimming_spots(const char *maker)
     return end != version && (major < 3 || (major == 3 && minor < 5));
 }
 
+/* The scale of a lamp's or camera's node; 0: it does not stand at the root. */
+static double root_scale(const struct aiScene *s, const struct aiString *name)
+{
+    assimp_matrix identity = {{0}}, world;
+    const struct aiNode *node = assimp_find_node(s->mRootNode, name, identity, 0, world);
+    if (!node || node->mParent != s->mRootNode)
+        return 0.0;
+    const struct aiMatrix4x4 *t = &node->mTransformation;
+    return sqrt((double)t->a1 * (double)t->a1 + (double)t->b1 * (double)t->b1 + (double)t->c1 * (double)t->c1);
+}
+
+/* Blender's FBX files have one unit of length in every scene, and what its own unit is in that as the scale of all
+ * objects at the root; so this is known where cameras and lamps there, which are seldom scaled, agree. */
+static void find_unit_of_fbx(assimp_writer *w)
+{
+    const struct aiScene *s = w->scene;
+    double agreed = 0.0;
+    unsigned votes = 0;
+    for (unsigned k = 0; k < s->mNumCameras + s->mNumLights; k++) {
+        const bool is_camera = k < s->mNumCameras;
+        const double scale = root_scale(s, is_camera ? &s->mCameras[k]->mName : &s->mLights[k - s->mNumCameras]->mName);
+        if (!(scale > 1e-6 && scale < 1e6))
+            continue;
+        if (votes > 0 && fabs(scale - agreed) > 1e-3 * agreed)
+            return;
+        agreed = scale;
+        votes += is_camera ? 2 : 1;
+    }
+    if (votes >= 2)
+        w->units_per_metre = (float)agreed;
+}
+
 /* Finds which program has written the file, on which the units of its lamps depend: see blender_lamps.h. */
 void assimp_find_maker(assimp_writer *w, const char *path)
 {
@@ -83,8 +128,12 @@ void assimp_find_maker(assimp_writer *w, const char *path)
         if (factor > 1e-6 && factor < 1e6)
             w->units_per_metre = (float)(100.0 / factor);
     }
-    if (w->is_blenders && is_collada)
+    if (w->is_blenders && is_fbx)
+        find_unit_of_fbx(w);
+    if (w->is_blenders && is_collada) {
         blender_lamps_read(path, &w->lamps);
+        w->units_per_metre = w->lamps.metres_per_unit;
+    }
     if (w->is_blenders && s->mNumCameras > 0)
         blender_shifts_read(path, is_fbx, &w->shifts);
 }
