@@ -23,6 +23,7 @@ typedef struct image {
     float *pixels;
     unsigned char *bytes;        /* of 8-bit files, where they were asked for */
     bool is_multiplied_by_alpha; /* the file says so of its colours, and they are as stored */
+    bool is_first_of_several;    /* the file holds other pictures beside it, which are not read: parts, pages, frames */
     bool has_chromaticities;
     float chromaticities[8]; /* that the file brings: of red, green, blue, white, each x and y */
 } image;

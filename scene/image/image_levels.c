@@ -6,13 +6,21 @@
 #include "image/image_module_loader.h"
 #include "image/png_chunks.h"
 #include "status.h"
+#include "text/input_file.h"
 
 #include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 enum { OPEN_MAX_COUNT = 128 };
+
+/* A file that parts are read from: the module's, and the descriptor that it was opened by. */
+typedef struct open_levels {
+    void *file; /* NULL: there is none */
+    int descriptor;
+} open_levels;
 
 struct image_levels {
     char *path;
@@ -20,7 +28,7 @@ struct image_levels {
     image_levels_header header;
     struct stat file; /* as it was when it was opened first */
     pthread_mutex_t lock;
-    void *open; /* under the lock; NULL: opened when it is needed */
+    open_levels open; /* under the lock; of no file: it is opened when it is needed */
 };
 
 static atomic_u64 open_count; /* relaxed: it only limits how many files stay open */
@@ -47,25 +55,54 @@ bool image_levels_is_unchanged(const image_levels *l)
     return stat(l->path, &now) == 0 && is_same_file(&l->file, &now);
 }
 
-ag_status image_levels_open(const char *path, image_levels **out_levels)
+static void close_file(const image_module *module, open_levels *open)
+{
+    if (!open->file)
+        return;
+    module->close_levels(open->file);
+    close(open->descriptor);
+    open->file = NULL;
+}
+
+/* Takes the descriptor of the file of that name. out_open->file is NULL where it holds no levels, or on failure. */
+static ag_status open_file(const image_module *module, int descriptor, const char *path, open_levels *out_open,
+                           image_levels_header *out_header)
+{
+    char message[1024], text[INPUT_FILE_OPENED_SIZE];
+    *out_open = (open_levels){.descriptor = descriptor};
+    const char *opened = input_file_opened_path(descriptor, path, text);
+    ag_status status = AG_OK;
+    if (!png_file_chunks_wrong(opened))
+        status = module->open_levels(opened, path, &out_open->file, out_header, message, sizeof message);
+    if (!out_open->file)
+        close(descriptor);
+    return status;
+}
+
+ag_status image_levels_open(const run_context *run, const char *path, image_levels **out_levels)
 {
     char message[1024];
-    *out_levels = NULL;
     struct stat file;
-    const image_module *module = image_module_get(message, sizeof message);
-    if (!module || stat(path, &file) != 0 || !S_ISREG(file.st_mode) || png_file_chunks_wrong(path))
-        return AG_OK;
+    open_levels open;
     image_levels_header header;
-    void *open;
-    const ag_status status = module->open_levels(path, &open, &header, message, sizeof message);
-    if (status != AG_OK || !open)
+    *out_levels = NULL;
+    const image_module *module = image_module_get(message, sizeof message);
+    const int descriptor = module ? input_file_open(run, path, message, sizeof message) : -1;
+    if (descriptor < 0)
+        return AG_OK;
+    if (fstat(descriptor, &file) != 0) {
+        close(descriptor);
+        return AG_OK;
+    }
+    const ag_status status = open_file(module, descriptor, path, &open, &header);
+    if (!open.file)
         return status == AG_ERROR_MEMORY ? status : AG_OK;
     image_levels *l = calloc(1, sizeof *l);
     char *copy = strdup(path);
     if (!l || !copy) {
         free(l);
         free(copy);
-        module->close_levels(open);
+        close_file(module, &open);
         return AG_ERROR_MEMORY;
     }
     *l = (image_levels){.path = copy, .module = module, .header = header, .file = file};
@@ -73,7 +110,7 @@ ag_status image_levels_open(const char *path, image_levels **out_levels)
     if (stay_open())
         l->open = open;
     else
-        module->close_levels(open);
+        close_file(module, &open);
     *out_levels = l;
     return AG_OK;
 }
@@ -82,10 +119,9 @@ void image_levels_close(image_levels *l)
 {
     if (!l)
         return;
-    if (l->open) {
-        l->module->close_levels(l->open);
+    if (l->open.file)
         leave_open();
-    }
+    close_file(l->module, &l->open);
     pthread_mutex_destroy(&l->lock);
     free(l->path);
     free(l);
@@ -105,34 +141,42 @@ static bool is_same_header(const image_levels_header *a, const image_levels_head
     return is_same;
 }
 
-/* Opens the picture for the reading of one part; *out_open is NULL where that fails. Errors: as image_levels_read. */
-static ag_status open_again(const image_levels *l, void **out_open)
+/* Opens the picture for the reading of one part; out_open->file is NULL where that fails. Whether the scene may read it
+ * was asked of the same file. Errors: as image_levels_read. */
+static ag_status open_again(const image_levels *l, open_levels *out_open)
 {
-    char message[1024];
+    char message[128];
+    struct stat file;
     image_levels_header header;
-    if (!image_levels_is_unchanged(l))
+    *out_open = (open_levels){0};
+    const int descriptor = input_file_open(NULL, l->path, message, sizeof message);
+    if (descriptor < 0)
         return AG_ERROR_INPUT;
-    AG_TRY(l->module->open_levels(l->path, out_open, &header, message, sizeof message));
-    if (*out_open && !is_same_header(&l->header, &header)) { /* it has changed since it was asked after */
-        l->module->close_levels(*out_open);
-        *out_open = NULL;
+    if (fstat(descriptor, &file) != 0 || !is_same_file(&l->file, &file)) {
+        close(descriptor);
+        return AG_ERROR_INPUT;
     }
-    return *out_open ? AG_OK : AG_ERROR_INPUT;
+    AG_TRY(open_file(l->module, descriptor, l->path, out_open, &header));
+    if (out_open->file && !is_same_header(&l->header, &header)) /* it has changed since it was asked after */
+        close_file(l->module, out_open);
+    return out_open->file ? AG_OK : AG_ERROR_INPUT;
 }
 
 ag_status image_levels_read(image_levels *l, int level, int x, int y, int channel_begin, int channel_end, bool as_bytes,
                             void *out_pixels)
 {
     pthread_mutex_lock(&l->lock);
-    void *open = l->open;
-    ag_status status = open ? AG_OK : open_again(l, &open);
+    open_levels open = l->open;
+    const bool was_open = open.file;
+    ag_status status = was_open ? AG_OK : open_again(l, &open);
     if (status == AG_OK)
-        status = l->module->read_tile(open, &l->header, level, x, y, channel_begin, channel_end, as_bytes, out_pixels);
-    if (open && !l->open) {
+        status =
+            l->module->read_tile(open.file, &l->header, level, x, y, channel_begin, channel_end, as_bytes, out_pixels);
+    if (open.file && !was_open) {
         if (stay_open())
             l->open = open;
         else
-            l->module->close_levels(open);
+            close_file(l->module, &open);
     }
     pthread_mutex_unlock(&l->lock);
     return status;

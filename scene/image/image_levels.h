@@ -7,15 +7,17 @@
 
 #include "afterglow/base.h"
 #include "image/image.h"
+#include "run_context.h"
 
 #include <stdbool.h>
 #include <stddef.h>
 
 typedef struct image_levels image_levels;
 
-/* *out_levels NULL, with AG_OK: the file holds no levels, cannot be read, or is of no kind that parts are read of,
+/* The file is opened as of input_file_open; run may be NULL. *out_levels NULL, with AG_OK: the file holds no levels,
+ * cannot be read, or is of no kind that parts are read of,
  * which reading it whole will tell. Errors: AG_ERROR_MEMORY. */
-ag_status image_levels_open(const char *path, image_levels **out_levels);
+ag_status image_levels_open(const run_context *run, const char *path, image_levels **out_levels);
 void image_levels_close(image_levels *l); /* NULL is fine */
 
 const image_levels_header *image_levels_describe(const image_levels *l);

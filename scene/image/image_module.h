@@ -19,7 +19,7 @@ extern "C" {
 #define IMAGE_MODULE_ENTRY_NAME "afterglow_image_module"
 
 /* Raised whenever this file or image.h changes. */
-enum { IMAGE_MODULE_INTERFACE = 9 };
+enum { IMAGE_MODULE_INTERFACE = 10 };
 
 typedef struct image_module {
     int interface_number; /* IMAGE_MODULE_INTERFACE of the module */
@@ -29,17 +29,20 @@ typedef struct image_module {
     ag_status (*encode)(const char *extension, const image_description *description, const float *pixels,
                         unsigned char **out_bytes, size_t *out_size, char *message, size_t message_size);
 
-    /* Reads the first picture of a file. Errors: AG_ERROR_INPUT, AG_ERROR_MEMORY. */
-    ag_status (*decode)(const char *path, image_wish wish, image *out_image, char *message, size_t message_size);
+    /* Reads the first picture of a file. name: the file's own, whose end may tell its format, where path is another way
+     * to it. Errors: AG_ERROR_INPUT, AG_ERROR_MEMORY. */
+    ag_status (*decode)(const char *path, const char *name, image_wish wish, image *out_image, char *message,
+                        size_t message_size);
 
     /* decode for a file's bytes in memory. extension: of their format, in lower case. */
     ag_status (*decode_memory)(const char *extension, const unsigned char *bytes, size_t size, image_wish wish,
                                image *out_image, char *message, size_t message_size);
 
-    /* Opens a file that holds tiles and coarser levels, the last a single pixel. *out_file is to be closed; NULL, with
-     * AG_OK, where it holds none of that kind. Errors: as of decode. */
-    ag_status (*open_levels)(const char *path, void **out_file, image_levels_header *out_header, char *message,
-                             size_t message_size);
+    /* Opens a file that holds tiles and coarser levels, the last a single pixel. path, name: as of decode; path is to
+     * stay valid. *out_file is to be closed; NULL, with AG_OK, where it holds none of that kind. Errors: as of decode.
+     */
+    ag_status (*open_levels)(const char *path, const char *name, void **out_file, image_levels_header *out_header,
+                             char *message, size_t message_size);
     /* A tile, from its upper left corner, of some of the channels, as bytes or floats; rows are as long as the level's
      * tiles are wide. header: what the caller's memory was measured by; where the file says other sizes by now, nothing
      * is read. Any number of threads may read from one file; they wait for one another. Errors: as of decode. */

@@ -283,25 +283,40 @@ image describe(const OIIO::ImageSpec &spec)
     return read;
 }
 
+/* Whether an open file holds pictures beside the first: of Photoshop's files and icons these are layers and sizes of
+ * it. */
+bool has_several(OIIO::ImageInput &input)
+{
+    const std::string format = input.format_name();
+    if (format != "openexr" && format != "tiff" && format != "gif" && format != "heif" && format != "webp")
+        return false;
+    const bool has = input.seek_subimage(1, 0);
+    input.geterror(); /* that there is none is no error */
+    if (!input.seek_subimage(0, 0))
+        fail("OpenImageIO cannot go back to its first part", input.geterror());
+    return has;
+}
+
 /* The name of the reader for a picture, by its first bytes. */
-const char *find_reader(const std::string &path, OIIO::Filesystem::IOProxy *proxy)
+const char *find_reader(const std::string &path, const char *name, OIIO::Filesystem::IOProxy *proxy)
 {
     unsigned char bytes[IMAGE_SIGNATURE_BYTES];
     const size_t size =
         proxy ? proxy->pread(bytes, sizeof bytes, 0) : OIIO::Filesystem::read_bytes(path, bytes, sizeof bytes);
-    const char *reader = image_signature_reader(path.c_str(), bytes, size);
+    const char *reader = image_signature_reader(name, bytes, size);
     if (!reader)
         fail("OpenImageIO cannot open it", size == 0 ? "it is empty" : "it is no picture of a known format");
     return reader;
 }
 
-std::unique_ptr<OIIO::ImageInput> open_input(const std::string &path, OIIO::Filesystem::IOProxy *proxy)
+std::unique_ptr<OIIO::ImageInput> open_input(const std::string &path, const char *name,
+                                             OIIO::Filesystem::IOProxy *proxy)
 {
     OIIO::ImageSpec wishes;
     wishes.attribute("oiio:UnassociatedAlpha", 1); /* colours as stored, not multiplied by alpha */
     if (proxy)
         wishes.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
-    std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::create(find_reader(path, proxy));
+    std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::create(find_reader(path, name, proxy));
     if (!input)
         fail("OpenImageIO cannot open it", OIIO::geterror());
     OIIO::ImageSpec spec;
@@ -312,13 +327,17 @@ std::unique_ptr<OIIO::ImageInput> open_input(const std::string &path, OIIO::File
 }
 
 /* proxy: the file's bytes, or NULL: they are read from path. */
-image read_picture(const std::string &path, image_wish wish, OIIO::Filesystem::IOProxy *proxy)
+image read_picture(const std::string &path, const char *name, image_wish wish, OIIO::Filesystem::IOProxy *proxy)
 {
-    const std::unique_ptr<OIIO::ImageInput> input = open_input(path, proxy);
+    const std::unique_ptr<OIIO::ImageInput> input = open_input(path, name, proxy);
     const OIIO::ImageSpec spec = input->spec();
-    if (spec.width < 1 || spec.height < 1 || spec.depth > 1 || spec.nchannels < 1 || spec.deep)
+    if (spec.deep)
+        throw std::runtime_error("it is a deep picture, whose pixels hold several samples: flatten it first (oiiotool "
+                                 "--flatten)");
+    if (spec.width < 1 || spec.height < 1 || spec.depth > 1 || spec.nchannels < 1)
         throw std::runtime_error("it is not a flat picture");
     image read = describe(spec);
+    read.is_first_of_several = has_several(*input);
     channel_range channels = find_colors(spec);
     if (wish == IMAGE_ALL_CHANNELS)
         channels.count = spec.nchannels - channels.begin;
@@ -332,10 +351,12 @@ image read_picture(const std::string &path, image_wish wish, OIIO::Filesystem::I
     return read;
 }
 
-ag_status decode(const char *path, image_wish wish, image *out_image, char *message, size_t message_size) noexcept
+ag_status decode(const char *path, const char *name, image_wish wish, image *out_image, char *message,
+                 size_t message_size) noexcept
 {
     *out_image = image();
-    return guarded(AG_ERROR_INPUT, message, message_size, [=] { *out_image = read_picture(path, wish, nullptr); });
+    return guarded(AG_ERROR_INPUT, message, message_size,
+                   [=] { *out_image = read_picture(path, name, wish, nullptr); });
 }
 
 ag_status decode_memory(const char *extension, const unsigned char *bytes, size_t size, image_wish wish,
@@ -344,7 +365,8 @@ ag_status decode_memory(const char *extension, const unsigned char *bytes, size_
     *out_image = image();
     return guarded(AG_ERROR_INPUT, message, message_size, [=] {
         OIIO::Filesystem::IOMemReader proxy(const_cast<unsigned char *>(bytes), size); /* which only reads */
-        *out_image = read_picture(std::string("picture.") + extension, wish, &proxy);
+        const std::string name = std::string("picture.") + extension;
+        *out_image = read_picture(name, name.c_str(), wish, &proxy);
     });
 }
 
@@ -384,19 +406,20 @@ bool is_usable_level(const OIIO::ImageSpec &spec, const image_levels_header &hea
            is_half_of(spec.width, before.width) && is_half_of(spec.height, before.height);
 }
 
-ag_status open_levels(const char *path, void **out_file, image_levels_header *out_header, char *message,
-                      size_t message_size) noexcept
+ag_status open_levels(const char *path, const char *name, void **out_file, image_levels_header *out_header,
+                      char *message, size_t message_size) noexcept
 {
     *out_file = nullptr;
     *out_header = image_levels_header();
     return guarded(AG_ERROR_INPUT, message, message_size, [=] {
-        std::unique_ptr<OIIO::ImageInput> input = open_input(path, nullptr);
+        std::unique_ptr<OIIO::ImageInput> input = open_input(path, name, nullptr);
         image_levels_header header = image_levels_header();
         OIIO::ImageSpec spec = input->spec();
         if (spec.tile_width == 0 || spec.width < 1 || spec.height < 1 || spec.nchannels < 1 ||
             find_colors(spec).begin != 0)
             return;
         header.picture = describe(spec);
+        header.picture.is_first_of_several = has_several(*input);
         header.file_channel_count = spec.nchannels;
         header.picture.channel_count = find_colors(spec).count;
         count_values(spec, OIIO::Filesystem::file_size(path));

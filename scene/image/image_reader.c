@@ -6,14 +6,14 @@
 #include "image/image_module_loader.h"
 #include "image/jpeg_end.h"
 #include "image/png_chunks.h"
+#include "text/input_file.h"
 
-#include <errno.h>
 #include <stdbool.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
+#include <unistd.h>
 
 static ag_status refuse_cut_jpeg(image *picture, char *message, size_t message_size)
 {
@@ -22,28 +22,51 @@ static ag_status refuse_cut_jpeg(image *picture, char *message, size_t message_s
     return AG_ERROR_INPUT;
 }
 
-static ag_status read_picture(const char *path, image_wish wish, image *out_image, char *message, size_t message_size)
+/* Puts the file's own name where OpenImageIO tells the path that it has opened. */
+static void name_file(char *text, size_t size, const char *opened, const char *path)
 {
-    *out_image = (image){0};
-    struct stat file;
-    const bool is_there = stat(path, &file) == 0;
-    if (!is_there || !S_ISREG(file.st_mode)) { /* a pipe that nobody writes to would be waited for */
-        snprintf(message, message_size, "cannot read '%s': %s", path,
-                 is_there ? "it is not a regular file" : strerror(errno));
-        return AG_ERROR_INPUT;
+    char *at = opened == path ? NULL : strstr(text, opened), rest[1024];
+    for (; at; at = strstr(at, opened)) {
+        snprintf(rest, sizeof rest, "%s", at + strlen(opened));
+        const int length = snprintf(at, size - (size_t)(at - text), "%s%s", path, rest);
+        if ((size_t)length >= size - (size_t)(at - text))
+            break;
+        at += strlen(path);
     }
-    const char *wrong = png_file_chunks_wrong(path);
+}
+
+/* The first bytes tell the format, and the name's end where they do not. */
+static ag_status decode_file(const image_module *module, const char *opened, const char *path, image_wish wish,
+                             image *out_image, char *reason, size_t reason_size)
+{
+    const char *wrong = png_file_chunks_wrong(opened);
     if (wrong) {
-        snprintf(message, message_size, "cannot read '%s': %s", path, wrong);
+        snprintf(reason, reason_size, "%s", wrong);
         return AG_ERROR_INPUT;
     }
-    const image_module *module = image_module_get(message, message_size);
-    if (!module)
-        return AG_ERROR_SYSTEM;
-    char reason[1024];
-    ag_status status = module->decode(path, wish, out_image, reason, sizeof reason);
-    if (status == AG_OK && jpeg_file_is_cut_short(path))
-        status = refuse_cut_jpeg(out_image, reason, sizeof reason);
+    ag_status status = module->decode(opened, path, wish, out_image, reason, reason_size);
+    if (status == AG_OK && jpeg_file_is_cut_short(opened))
+        status = refuse_cut_jpeg(out_image, reason, reason_size);
+    name_file(reason, reason_size, opened, path);
+    return status;
+}
+
+static ag_status read_picture(const run_context *run, const char *path, image_wish wish, image *out_image,
+                              char *message, size_t message_size)
+{
+    char reason[1024], text[INPUT_FILE_OPENED_SIZE];
+    *out_image = (image){0};
+    const int descriptor = input_file_open(run, path, reason, sizeof reason);
+    ag_status status = AG_ERROR_INPUT;
+    if (descriptor >= 0) {
+        const image_module *module = image_module_get(message, message_size);
+        if (module)
+            status = decode_file(module, input_file_opened_path(descriptor, path, text), path, wish, out_image, reason,
+                                 sizeof reason);
+        close(descriptor);
+        if (!module)
+            return AG_ERROR_SYSTEM;
+    }
     if (status != AG_OK)
         snprintf(message, message_size, "cannot read '%s': %s", path, reason);
     return status;
@@ -51,17 +74,19 @@ static ag_status read_picture(const char *path, image_wish wish, image *out_imag
 
 ag_status image_read(const char *path, image *out_image, char *message, size_t message_size)
 {
-    return read_picture(path, IMAGE_ALL_CHANNELS, out_image, message, message_size);
+    return read_picture(NULL, path, IMAGE_ALL_CHANNELS, out_image, message, message_size);
 }
 
-ag_status image_read_colors(const char *path, image *out_image, char *message, size_t message_size)
+ag_status image_read_colors(const run_context *run, const char *path, image *out_image, char *message,
+                            size_t message_size)
 {
-    return read_picture(path, IMAGE_COLORS, out_image, message, message_size);
+    return read_picture(run, path, IMAGE_COLORS, out_image, message, message_size);
 }
 
-ag_status image_read_compact(const char *path, image *out_image, char *message, size_t message_size)
+ag_status image_read_compact(const run_context *run, const char *path, image *out_image, char *message,
+                             size_t message_size)
 {
-    return read_picture(path, IMAGE_COMPACT_COLORS, out_image, message, message_size);
+    return read_picture(run, path, IMAGE_COMPACT_COLORS, out_image, message, message_size);
 }
 
 /* NULL: neither of the two that glTF knows. */

@@ -5,6 +5,7 @@
 
 #include "afterglow/base.h"
 #include "image/image.h"
+#include "run_context.h"
 
 #include <stddef.h>
 
@@ -13,11 +14,14 @@
  * opened), AG_ERROR_MEMORY. */
 ag_status image_read(const char *path, image *out_image, char *message, size_t message_size);
 
-/* image_read of the colours alone: what textures and lights are made of. */
-ag_status image_read_colors(const char *path, image *out_image, char *message, size_t message_size);
+/* image_read of the colours alone: what textures and lights are made of. The file is opened as of input_file_open,
+ * which asks the run's inputs; run may be NULL. */
+ag_status image_read_colors(const run_context *run, const char *path, image *out_image, char *message,
+                            size_t message_size);
 
 /* image_read_colors, but values of 8 bits stay bytes. */
-ag_status image_read_compact(const char *path, image *out_image, char *message, size_t message_size);
+ag_status image_read_compact(const run_context *run, const char *path, image *out_image, char *message,
+                             size_t message_size);
 
 /* Reads a PNG or JPEG file in memory, which its first bytes tell apart; values of 8 bits stay bytes. name: for
  * messages. */

@@ -75,7 +75,10 @@ static ag_status take(const scene *s, const char *name, const char *path, image 
         return AG_ERROR_SCENE;
     }
     const size_t count = (size_t)picture.width * (size_t)picture.height;
-    light_picture p = {(uint32_t)picture.width, (uint32_t)picture.height, rgb_pixels(&picture), 0};
+    light_picture p = {.width = (uint32_t)picture.width,
+                       .height = (uint32_t)picture.height,
+                       .pixels = rgb_pixels(&picture),
+                       .is_first_of_several = picture.is_first_of_several};
     image_reset(&picture); /* as soon as can be: large ones are a gigabyte */
     if (!p.pixels)
         return AG_ERROR_MEMORY;
@@ -90,13 +93,13 @@ static ag_status take(const scene *s, const char *name, const char *path, image 
     return AG_OK;
 }
 
-ag_status light_picture_read(const scene *s, const char *name, const char *path, bool is_gray,
+ag_status light_picture_read(const run_context *run, const scene *s, const char *name, const char *path, bool is_gray,
                              light_picture *out_picture, char *message, size_t message_size)
 {
     char reason[512] = "";
     image picture = {0};
     *out_picture = (light_picture){0};
-    const ag_status status = image_read_colors(path, &picture, reason, sizeof reason);
+    const ag_status status = image_read_colors(run, path, &picture, reason, sizeof reason);
     if (status != AG_OK) {
         image_reset(&picture);
         return describe_failure(status, name, reason, message, message_size);

@@ -7,16 +7,20 @@
 
 struct environment;
 
+#define LIGHT_PICTURE_OTHERS                                                                                           \
+    "the file holds several pictures (parts, pages or frames), of which the first alone is used"
+
 typedef struct light_picture {
     uint32_t width, height;
-    rgb *pixels;      /* from malloc, top row first; finite and not negative; the caller's */
-    size_t bad_count; /* of them, that were not so in the file, and are 0 in what was wrong */
+    rgb *pixels;              /* from malloc, top row first; finite and not negative; the caller's */
+    bool is_first_of_several; /* its file holds other pictures, which are not used */
+    size_t bad_count;         /* of them, that were not so in the file, and are 0 in what was wrong */
 } light_picture;
 
-/* name: what messages call the picture of that path, which is known to be a file that may be read. is_gray: its values
- * are no colours. Errors: AG_ERROR_COLOR, AG_ERROR_INPUT, AG_ERROR_SYSTEM, AG_ERROR_SCENE (too large), with the reason
- * in message; AG_ERROR_MEMORY. */
-ag_status light_picture_read(const scene *s, const char *name, const char *path, bool is_gray,
+/* name: what messages call the picture of that path. run: whose inputs say what may be read; NULL: that is known.
+ * is_gray: its values are no colours. Errors: AG_ERROR_COLOR, AG_ERROR_INPUT, AG_ERROR_SYSTEM, AG_ERROR_SCENE (too
+ * large), with the reason in message; AG_ERROR_MEMORY. */
+ag_status light_picture_read(const run_context *run, const scene *s, const char *name, const char *path, bool is_gray,
                              light_picture *out_picture, char *message, size_t message_size);
 
 struct image;

@@ -180,9 +180,11 @@ static ag_status read_sky(run_context *run, scene *s, environment **out_picture,
     *out_picture = light_picture_find_kept(s, path, version, false);
     if (*out_picture)
         return AG_OK;
-    AG_TRY(light_picture_read(s, path, path, false, &picture, message, message_size));
+    AG_TRY(light_picture_read(NULL, s, path, path, false, &picture, message, message_size));
     AG_TRY(light_picture_surround(&picture, path, out_picture, message, message_size));
     light_picture_note(s, path, version, false, *out_picture);
+    if (picture.is_first_of_several)
+        log_message(run->log, AG_LOG_WARNING, "\"%s\": " LIGHT_PICTURE_OTHERS, path);
     if (picture.bad_count > 0)
         log_message(run->log, AG_LOG_WARNING,
                     "\"%s\": %zu pixels are negative, infinite or not a number; what is counts as 0", path,

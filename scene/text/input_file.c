@@ -198,6 +198,12 @@ FILE *input_file_stream(const char *path)
     return file;
 }
 
+const char *input_file_opened_path(int descriptor, const char *path, char out_text[INPUT_FILE_OPENED_SIZE])
+{
+    snprintf(out_text, INPUT_FILE_OPENED_SIZE, "/proc/self/fd/%d", descriptor);
+    return access(out_text, R_OK) == 0 ? out_text : path;
+}
+
 bool input_file_allow(const run_context *run, const char *path, char *error, size_t error_size)
 {
     int descriptor = input_file_open(run, path, error, error_size);

@@ -41,6 +41,11 @@ int input_file_open(const run_context *run, const char *path, char *error, size_
  * regular file any more. */
 FILE *input_file_stream(const char *path);
 
+/* The path by which a library that opens files itself opens this very file, whatever its name leads to by now; path,
+ * its name, where there is none (no /proc). Valid as long as the descriptor is open, and out_text. */
+enum { INPUT_FILE_OPENED_SIZE = 64 };
+const char *input_file_opened_path(int descriptor, const char *path, char out_text[INPUT_FILE_OPENED_SIZE]);
+
 /* A number that differs where a file may have changed; 0 where that cannot be told. */
 uint64_t input_file_version(const char *path);
 

@@ -36,7 +36,7 @@ typedef struct kept_header {
     int32_t type, curve; /* of the file; that its values were made linear by */
     float gamma, least, most;
     float chromaticities[8];
-    uint8_t as_bytes, has_alpha, has_chromaticities, unused;
+    uint8_t as_bytes, has_alpha, has_chromaticities, is_first_of_several;
 } kept_header;
 
 static const char MAGIC[8] = "AGTILES";
@@ -249,6 +249,7 @@ static ag_status take(const scene *s, const kept_header *h, texture_image *i, bo
     i->height = h->height;
     i->channel_count = h->channel_count;
     i->bad_count = h->bad_count;
+    i->is_first_of_several = h->is_first_of_several;
     i->least = h->least;
     i->most = h->most;
     i->stored_content = h->content;
@@ -326,6 +327,7 @@ static kept_header header_of(hash128 key, const texture_image *i, const image *d
     memcpy(h.chromaticities, description->chromaticities, sizeof h.chromaticities);
     h.as_bytes = i->mips->levels[0].sample == TEXTURE_BYTES;
     h.has_alpha = i->stored_alpha.width > 0;
+    h.is_first_of_several = i->is_first_of_several;
     return h;
 }
 

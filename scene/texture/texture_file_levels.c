@@ -297,6 +297,7 @@ static ag_status read_levels(run_context *run, const struct scene *s, texture_fi
     i->height = (uint32_t)l->header->levels[0].height;
     i->channel_count = (uint32_t)l->color_count;
     i->is_by_file = true;
+    i->is_first_of_several = l->header->picture.is_first_of_several;
     i->mips = calloc(1, sizeof *i->mips);
     if (!i->mips)
         return AG_ERROR_MEMORY;
@@ -316,7 +317,7 @@ ag_status texture_file_levels_read(run_context *run, const struct scene *s, text
 {
     image_levels *file;
     *out_is_read = false;
-    AG_TRY(image_levels_open(i->path, &file));
+    AG_TRY(image_levels_open(run, i->path, &file));
     if (!file)
         return AG_OK;
     texture_file_levels *l = calloc(1, sizeof *l);

@@ -50,6 +50,7 @@ typedef struct texture_image {
     bool is_stored;             /* all pixels lie in the scene's texture_store: those above are NULL, mips are there */
     texture_level stored_alpha; /* then, where it has one: tiles is not NULL */
     hash128 stored_content;     /* then, what texture_image_content was */
+    bool is_first_of_several;   /* its file holds other pictures, too */
     bool is_by_file;            /* its levels are those of its file, whose bytes are its fingerprint */
     struct texture_file_levels *file; /* from which tiles are read, or NULL */
     struct texture_kept *kept;        /* the file of a cache folder that its tiles lie in, or NULL */

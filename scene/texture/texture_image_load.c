@@ -35,6 +35,17 @@ static ag_status allow(const source *from, char *message, size_t message_size)
     return AG_ERROR_INPUT;
 }
 
+static void tell_of_others(run_context *run, const texture_image *i)
+{
+    char key[4096];
+    if (!run || !i->is_first_of_several)
+        return;
+    snprintf(key, sizeof key, "several:%s", i->path);
+    log_once(run->log, AG_LOG_WARNING, key,
+             "'%s': the file holds several pictures (parts, pages or frames), of which the first alone is used",
+             i->path);
+}
+
 /* *out_description: the picture without its pixels. */
 static ag_status read_image(const scene *s, texture_image *i, const source *from, image *out_description, char *message,
                             size_t message_size)
@@ -46,12 +57,13 @@ static ag_status read_image(const scene *s, texture_image *i, const source *from
     else if (from->bytes)
         status = image_read_memory(from->path, from->bytes, from->size, &picture, message, message_size);
     else
-        status = image_read_compact(from->path, &picture, message, message_size);
+        status = image_read_compact(from->run, from->path, &picture, message, message_size);
     if (status == AG_OK)
         status = image_fill_window(&picture, from->path, message, message_size);
     *out_description = picture;
     out_description->pixels = NULL;
     out_description->bytes = NULL;
+    i->is_first_of_several = picture.is_first_of_several;
     if (status == AG_OK)
         status = texture_image_take(s, i, &picture, message, message_size);
     image_reset(&picture);
@@ -294,6 +306,8 @@ static ag_status load(scene *s, const source *given, uint32_t *out_index, char *
             status = texture_file_levels_read(from->run, s, i, &is_read, message, message_size);
         if (status == AG_OK && !is_read)
             status = read_and_hold(s, i, from, message, message_size);
+        if (status == AG_OK)
+            tell_of_others(from->run, i);
     }
     if (status != AG_OK)
         texture_image_destroy(i);

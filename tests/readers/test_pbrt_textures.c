@@ -208,7 +208,7 @@ static void alpha_is_found_by_its_name(void **state)
                                      .type = IMAGE_FLOAT};
         write_parts("alpha.exr", &d, PIXEL);
         image read;
-        assert_int_equal(image_read_colors(in_folder("alpha.exr"), &read, message, sizeof message), AG_OK);
+        assert_int_equal(image_read_colors(NULL, in_folder("alpha.exr"), &read, message, sizeof message), AG_OK);
         assert_int_equal(read.channel_count, CASES[k].channel_count == 2 ? 2 : CASES[k].has_alpha ? 4 : 3);
         image_reset(&read);
         reading r = read_world(PICTURE("alpha.exr"));
@@ -233,7 +233,7 @@ static void levels_of_small_tiles_are_not_used(void **state)
                  "oiiotool --pattern noise 64x64 4 --chnames %s --tile %d %d -otex '%s' >/dev/null", CASES[k].names,
                  CASES[k].tile_side, CASES[k].tile_side, in_folder("levels.exr"));
         assert_int_equal(system(command), 0);
-        assert_int_equal(image_levels_open(in_folder("levels.exr"), &levels), AG_OK);
+        assert_int_equal(image_levels_open(NULL, in_folder("levels.exr"), &levels), AG_OK);
         assert_int_equal(levels ? image_levels_describe(levels)->picture.channel_count : 0, CASES[k].channel_count);
         float tile[8 * 8 * 3];
         if (levels)

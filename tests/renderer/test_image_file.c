@@ -372,7 +372,8 @@ static void broken_pictures_are_errors(void **state)
     assert_int_equal(truncate(in_folder("x.exr"), status.st_size / 2), 0);
     expect_failure(image_read(in_folder("x.exr"), &back, message, sizeof message), AG_ERROR_INPUT, "x.exr");
     assert_null(back.pixels);
-    expect_failure(image_read_compact(in_folder("x.exr"), &back, message, sizeof message), AG_ERROR_INPUT, "x.exr");
+    expect_failure(image_read_compact(NULL, in_folder("x.exr"), &back, message, sizeof message), AG_ERROR_INPUT,
+                   "x.exr");
     assert_null(back.bytes);
 }
 
@@ -435,9 +436,10 @@ static void values_are_as_stored(void **state)
         write_picture(in_folder(kinds[k].name), &description, pixels);
         for (int compact = 0; compact < 2; compact++) {
             image read;
-            assert_int_equal(
-                (compact ? image_read_compact : image_read)(in_folder(kinds[k].name), &read, message, sizeof message),
-                AG_OK);
+            assert_int_equal(compact
+                                 ? image_read_compact(NULL, in_folder(kinds[k].name), &read, message, sizeof message)
+                                 : image_read(in_folder(kinds[k].name), &read, message, sizeof message),
+                             AG_OK);
             assert_int_equal(read.type, kinds[k].type);
             const bool is_bytes = compact && kinds[k].type == IMAGE_UINT8;
             assert_int_equal(read.bytes != NULL, is_bytes);
@@ -458,7 +460,7 @@ static void values_are_as_stored(void **state)
              folder);
     assert_int_equal(system(command), 0);
     image read;
-    assert_int_equal(image_read_compact(in_folder("alpha.png"), &read, message, sizeof message), AG_OK);
+    assert_int_equal(image_read_compact(NULL, in_folder("alpha.png"), &read, message, sizeof message), AG_OK);
     const unsigned char expected[] = {255, 128, 0, 0};
     assert_int_equal(read.channel_count, 4);
     assert_memory_equal(read.bytes, expected, sizeof expected);

@@ -184,8 +184,8 @@ static void expect_same_pictures(desk *d, const char *texture, const char *sky, 
     assert_int_equal(ag_scene_create(d->context, NULL, &d->made), AG_OK);
     for (int i = 0; i < 2; i++) {
         ag_image picture = ag_default_image();
-        assert_int_equal(is_as_floats ? image_read_colors(files[i], &pixels[i], message, sizeof message)
-                                      : image_read_compact(files[i], &pixels[i], message, sizeof message),
+        assert_int_equal(is_as_floats ? image_read_colors(NULL, files[i], &pixels[i], message, sizeof message)
+                                      : image_read_compact(NULL, files[i], &pixels[i], message, sizeof message),
                          AG_OK);
         picture.width = pixels[i].width;
         picture.height = pixels[i].height;

@@ -26,7 +26,7 @@ static void tiles_are_of_the_header(void **state)
     assert_non_null(module);
     image_levels_header header;
     void *open;
-    assert_int_equal(module->open_levels(in_folder("a.tx"), &open, &header, message, sizeof message), AG_OK);
+    assert_int_equal(module->open_levels(in_folder("a.tx"), "a.tx", &open, &header, message, sizeof message), AG_OK);
     assert_non_null(open);
     assert_int_equal(module->read_tile(open, &header, 1, 64, 0, 0, 3, true, pixels), AG_OK);
     assert_int_equal(pixels[3 * (TIFF_TILE + 2) + 1], number(1, 66, 1, 1));
@@ -50,7 +50,7 @@ static void a_file_that_was_exchanged_is_an_error(void **state)
     struct stat before;
     tiff_write_levels("a.tx", 256, 3, number);
     for (int k = 0; k < MANY; k++) {
-        assert_int_equal(image_levels_open(in_folder("a.tx"), &levels[k]), AG_OK);
+        assert_int_equal(image_levels_open(NULL, in_folder("a.tx"), &levels[k]), AG_OK);
         assert_non_null(levels[k]);
     }
     image_levels *last = levels[MANY - 1];

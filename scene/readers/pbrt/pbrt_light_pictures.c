@@ -62,7 +62,8 @@ static ag_status read_file(pbrt_parser *parser, const char *name, bool is_gray, 
     char reason[512];
     ag_status status = pbrt_allow_picture(parser, path, reason, sizeof reason);
     if (status == AG_OK)
-        status = light_picture_read(parser->scene, name, path, is_gray, out_picture, message, message_size);
+        status =
+            light_picture_read(parser->run, parser->scene, name, path, is_gray, out_picture, message, message_size);
     else
         snprintf(message, message_size, "cannot read the picture \"%s\": %s", name, reason);
     free(path);
@@ -83,6 +84,9 @@ static ag_status read_pixels(pbrt_parser *parser, const parameter_list *list, co
         status = read_file(parser, name, is_gray, out_picture, message, sizeof message);
     if (status != AG_OK)
         return refuse_picture(parser, list, status, message);
+    if (out_picture->is_first_of_several)
+        log_at(parser->log, AG_LOG_WARNING, parameter_list_find(list, "filename")->where,
+               "\"%s\": " LIGHT_PICTURE_OTHERS, name);
     if (out_picture->bad_count > 0)
         log_at(parser->log, AG_LOG_WARNING, parameter_list_find(list, "filename")->where,
                "\"%s\": %zu pixels are negative, infinite or not a number; what is counts as 0", name,
