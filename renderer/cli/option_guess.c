@@ -109,5 +109,12 @@ const char *option_guess(const char *name)
             best = option.text->name;
         }
     }
+    for (size_t i = 0; i < sizeof OTHERS / sizeof *OTHERS; i++) {
+        int slips = distance(name, OTHERS[i][0]);
+        if (slips < nearest) {
+            nearest = slips;
+            best = OTHERS[i][1];
+        }
+    }
     return best;
 }

@@ -147,6 +147,8 @@ static void what_was_meant_is_named(void **state)
     static const char *const MEANT[][2] = {
         {"--samples", "there is no option --samples: did you mean --spp?"},
         {"--samples=4", "there is no option --samples: did you mean --spp?"},
+        {"--sampels=4", "there is no option --sampels: did you mean --spp?"},
+        {"--resoluton=4x4", "did you mean --size?"},
         {"--resolution=4x4", "did you mean --size?"},
         {"--threds=2", "did you mean --nthreads?"},
         {"--nhtreads=2", "did you mean --nthreads?"},
