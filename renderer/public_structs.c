@@ -19,8 +19,8 @@ static const ag_scene_settings SCENE_SETTINGS = {.struct_size = sizeof(ag_scene_
                                                  .sky_radiance = {1.0f, 1.0f, 1.0f}};
 static const ag_image IMAGE = {.struct_size = sizeof(ag_image), .channel_count = 3};
 static const ag_texture TEXTURE = {.struct_size = sizeof(ag_texture), .value = AG_TEXTURE_SPECTRUM};
-static const ag_shape SHAPE = {.struct_size = sizeof(ag_shape)};
-static const ag_instance INSTANCE = {.struct_size = sizeof(ag_instance)};
+static const ag_shape SHAPE = {.struct_size = sizeof(ag_shape), .end_count = 1};
+static const ag_instance INSTANCE = {.struct_size = sizeof(ag_instance), .end_count = 1};
 static const ag_light LIGHT = {.struct_size = sizeof(ag_light)};
 static const ag_camera CAMERA = {.struct_size = sizeof(ag_camera), .type = "perspective"};
 

@@ -1,6 +1,8 @@
 /* call_matrix.c: see call_matrix.h. */
 #include "call_matrix.h"
 
+#include "status.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -29,12 +31,11 @@ static ag_status refuse(log_sink *log, file_location where, const char *what)
     return AG_ERROR_ARGUMENT;
 }
 
-ag_status call_matrix_copy(log_sink *log, file_location where, const double *rows, double **out)
+enum { NUMBERS = 16 };
+
+static ag_status check(log_sink *log, file_location where, const double *rows)
 {
-    enum { NUMBERS = 16 };
     transform unused;
-    if (!rows)
-        return AG_OK;
     for (int i = 0; i < NUMBERS; i++)
         if (!isfinite(rows[i]))
             return refuse(log, where, "a number of its matrix is not finite");
@@ -44,9 +45,18 @@ ag_status call_matrix_copy(log_sink *log, file_location where, const double *row
                       "is in the last column");
     if (!call_matrix_transform(rows, &unused))
         return refuse(log, where, "its matrix cannot be undone");
-    *out = malloc(NUMBERS * sizeof **out);
+    return AG_OK;
+}
+
+ag_status call_matrix_copy(log_sink *log, file_location where, const double *rows, size_t count, double **out)
+{
+    if (!rows)
+        return AG_OK;
+    for (size_t i = 0; i < count; i++)
+        AG_TRY(check(log, where, rows + NUMBERS * i));
+    *out = malloc(NUMBERS * count * sizeof **out);
     if (!*out)
         return AG_ERROR_MEMORY;
-    memcpy(*out, rows, NUMBERS * sizeof **out);
+    memcpy(*out, rows, NUMBERS * count * sizeof **out);
     return AG_OK;
 }

@@ -48,6 +48,7 @@ void scene_call_release(scene_call *c)
     free(c->medium_outside);
     free(c->start);
     free(c->end);
+    free(c->between);
     scene_parameters_free(&c->items);
     scene_parameters_free(&c->light_items);
     if (c->mesh)
@@ -93,11 +94,13 @@ static pbrt_placement placement_of(const scene_call *c)
                          .object = c->object,
                          .medium_inside = c->medium_inside,
                          .medium_outside = c->medium_outside,
-                         .made_mesh = c->mesh};
+                         .made_mesh = c->mesh,
+                         .between = c->between,
+                         .between_count = c->end ? (uint32_t)c->end_count - 1 : 0};
     (void)call_matrix_transform(c->start, &at.start);
     at.end = at.start;
     if (c->end)
-        (void)call_matrix_transform(c->end, &at.end);
+        (void)call_matrix_transform(c->end + 16 * (c->end_count - 1), &at.end);
     if (c->kind == CALL_CAMERA) {
         at.start = transform_invert(&at.start);
         at.end = transform_invert(&at.end);

@@ -42,7 +42,9 @@ typedef struct scene_call {
     char *texts[3]; /* materials and media: name and type; textures: name, value and type; pictures: the name;
                        instances: none; all others: the type */
     char *material, *object, *medium_inside, *medium_outside; /* as in pbrt_placement */
-    double *start, *end;                                      /* [16], owned, or NULL */
+    double *start, *end;                                      /* [16], [16 * end_count], owned, or NULL */
+    size_t end_count;                                         /* at least 1 where there is an end */
+    transform *between;                                       /* of all ends but the last, owned, or NULL */
     bool reverse_orientation, is_light;
     pbrt_items items, light_items;
     pbrt_borrowed borrowed; /* arrays of a shape, until its mesh is made; positions NULL: none */
@@ -61,8 +63,9 @@ void scene_call_release(scene_call *c); /* NULL is fine */
 /* Copies the arguments into an empty call, and says in the log what is wrong with them. Errors: AG_ERROR_ARGUMENT,
  * AG_ERROR_MEMORY. */
 ag_status scene_call_take(log_sink *log, const call_given *given, scene_call *c);
-/* Makes of an empty call a copy of a placed one with other matrices, or with another material; both share the mesh.
- * Errors: AG_ERROR_ARGUMENT (also where a mesh is to be moved, since its arrays are gone), AG_ERROR_MEMORY. */
+/* Makes of an empty call a copy of a placed one with other matrices, one end at most, or with another material; both
+ * share the mesh. Errors: AG_ERROR_ARGUMENT (also where a mesh is to be moved, since its arrays are gone),
+ * AG_ERROR_MEMORY. */
 ag_status scene_call_move(log_sink *log, const scene_call *from, const double *start, const double *end, scene_call *c);
 ag_status scene_call_assign(const scene_call *from, const char *material_name, scene_call *c);
 

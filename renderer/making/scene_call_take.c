@@ -4,6 +4,7 @@
 
 #include "call_matrix.h"
 #include "image/image_reader.h"
+#include "math/motion.h"
 #include "scene_parameters.h"
 #include "status.h"
 
@@ -46,11 +47,20 @@ static ag_status take_parameters(log_sink *log, scene_call *c, const ag_paramete
     return scene_parameters_copy(log, c->where, given, count, &c->items);
 }
 
-/* end: NULL where it does not move. */
-static ag_status take_matrices(log_sink *log, scene_call *c, const double *start, const double *end)
+/* end: `end_count` matrices; NULL where it does not move. */
+static ag_status take_matrices(log_sink *log, scene_call *c, const double *start, const double *end, size_t end_count)
 {
-    AG_TRY(call_matrix_copy(log, c->where, start, &c->start));
-    return call_matrix_copy(log, c->where, end, &c->end);
+    if (end && (end_count < 1 || end_count > MOTION_STEPS_MAX - 1))
+        return refuse(log, c, "end_count should be from 1 to 128");
+    AG_TRY(call_matrix_copy(log, c->where, start, 1, &c->start));
+    AG_TRY(call_matrix_copy(log, c->where, end, end_count, &c->end));
+    c->end_count = end_count;
+    if (!end || end_count == 1)
+        return AG_OK;
+    c->between = malloc((end_count - 1) * sizeof *c->between);
+    for (size_t i = 0; c->between && i < end_count - 1; i++)
+        (void)call_matrix_transform(end + 16 * i, &c->between[i]); /* they have been checked */
+    return c->between ? AG_OK : AG_ERROR_MEMORY;
 }
 
 ag_status scene_call_name(scene_call *c, const char *name, bool is_float)
@@ -145,7 +155,7 @@ static ag_status take_shape(log_sink *log, const void *given, scene_call *c)
     AG_TRY(take_text(s.object, &c->object));
     AG_TRY(take_text(s.medium_inside, &c->medium_inside));
     AG_TRY(take_text(s.medium_outside, &c->medium_outside));
-    AG_TRY(take_matrices(log, c, s.world_from_shape, s.world_from_shape_end));
+    AG_TRY(take_matrices(log, c, s.world_from_shape, s.world_from_shape_end, s.end_count));
     AG_TRY(s.borrows_arrays ? take_borrowing_shape(log, c, &s)
                             : take_parameters(log, c, s.parameters, s.parameter_count));
     return scene_parameters_copy(log, c->where, s.light_parameters, s.light_parameter_count, &c->light_items);
@@ -159,7 +169,7 @@ static ag_status take_light(log_sink *log, const void *given, scene_call *c)
         return refuse(log, c, "the light has no type");
     AG_TRY(take_text(l.type, &c->texts[0]));
     AG_TRY(take_text(l.medium_outside, &c->medium_outside));
-    AG_TRY(take_matrices(log, c, l.world_from_light, NULL));
+    AG_TRY(take_matrices(log, c, l.world_from_light, NULL, 0));
     return take_parameters(log, c, l.parameters, l.parameter_count);
 }
 
@@ -170,7 +180,7 @@ static ag_status take_instance(log_sink *log, const void *given, scene_call *c)
     if (!i.object)
         return refuse(log, c, "the instance names no object");
     AG_TRY(take_text(i.object, &c->object));
-    return take_matrices(log, c, i.world_from_object, i.world_from_object_end);
+    return take_matrices(log, c, i.world_from_object, i.world_from_object_end, i.end_count);
 }
 
 static ag_status take_camera(log_sink *log, const void *given, scene_call *c)
@@ -181,7 +191,7 @@ static ag_status take_camera(log_sink *log, const void *given, scene_call *c)
         return refuse(log, c, "the camera has no type");
     AG_TRY(take_text(seen.type, &c->texts[0]));
     AG_TRY(take_text(seen.medium, &c->medium_outside));
-    AG_TRY(take_matrices(log, c, seen.world_from_camera, seen.world_from_camera_end));
+    AG_TRY(take_matrices(log, c, seen.world_from_camera, seen.world_from_camera_end, 1));
     return take_parameters(log, c, seen.parameters, seen.parameter_count);
 }
 
@@ -194,7 +204,7 @@ static ag_status take_texture(log_sink *log, const void *given, scene_call *c)
     AG_TRY(take_text(t.name, &c->texts[0]));
     AG_TRY(take_text(t.value == AG_TEXTURE_FLOAT ? "float" : "spectrum", &c->texts[1]));
     AG_TRY(take_text(t.type, &c->texts[2]));
-    AG_TRY(take_matrices(log, c, t.world_from_texture, NULL));
+    AG_TRY(take_matrices(log, c, t.world_from_texture, NULL, 0));
     return take_parameters(log, c, t.parameters, t.parameter_count);
 }
 
@@ -288,14 +298,14 @@ ag_status scene_call_move(log_sink *log, const scene_call *from, const double *s
                       "are not kept");
     if (from->kind == CALL_LIGHT && end)
         return refuse(log, c, "a light does not move while the shutter is open");
-    AG_TRY(take_matrices(log, c, start, end));
+    AG_TRY(take_matrices(log, c, start, end, 1));
     AG_TRY(take_text(from->material, &c->material));
     return copy_rest(from, c);
 }
 
 ag_status scene_call_assign(const scene_call *from, const char *material_name, scene_call *c)
 {
-    AG_TRY(take_matrices(NULL, c, from->start, from->end));
+    AG_TRY(take_matrices(NULL, c, from->start, from->end, from->end_count));
     AG_TRY(take_text(material_name, &c->material));
     return copy_rest(from, c);
 }

@@ -169,22 +169,30 @@ void motion_at(const motion *m, double time, double out_matrix[3][4])
     }
 }
 
+void motion_path_at(const motion_path *path, double time, double out_matrix[3][4])
+{
+    const motion *first = &path->segments[0];
+    const double last = (double)(path->segment_count - 1);
+    const double passed = first->at_opening + time * (first->at_closing - first->at_opening); /* segments */
+    motion_at(first + (size_t)fmin(fmax(passed, 0.0), last), time, out_matrix);
+}
+
 /* --- steps --- */
 
-static void product_at(const motion *outer, const motion *inner, double time, double out[3][4])
+static void product_at(const motion_path *outer, const motion_path *inner, double time, double out[3][4])
 {
     double a[3][4], b[3][4];
-    motion_at(outer, time, inner ? a : out);
+    motion_path_at(outer, time, inner ? a : out);
     if (!inner)
         return;
-    motion_at(inner, time, b);
+    motion_path_at(inner, time, b);
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 4; j++)
             out[i][j] = a[i][0] * b[0][j] + a[i][1] * b[1][j] + a[i][2] * b[2][j] + (j == 3 ? a[i][3] : 0.0);
 }
 
 /* How far the middle and the quarters of a straight step are off the motion: linear part, translation. */
-static bool is_straight(const motion *outer, const motion *inner, double begin, double end, double way)
+static bool is_straight(const motion_path *outer, const motion_path *inner, double begin, double end, double way)
 {
     double first[3][4], last[3][4], at[3][4];
     product_at(outer, inner, begin, first);
@@ -204,7 +212,7 @@ static bool is_straight(const motion *outer, const motion *inner, double begin, 
     return true;
 }
 
-static affine rounded_at(const motion *outer, const motion *inner, double time)
+static affine rounded_at(const motion_path *outer, const motion_path *inner, double time)
 {
     double m[3][4];
     affine a;
@@ -215,30 +223,48 @@ static affine rounded_at(const motion *outer, const motion *inner, double time)
     return a;
 }
 
-uint32_t motion_steps(const motion *outer, const motion *inner, affine out_steps[MOTION_STEPS_MAX])
+/* How many segments have a border wherever one of both paths has one, if that is a number that steps can have; else as
+ * many as the longer path has. */
+static uint32_t segments_of(const motion_path *outer, const motion_path *inner)
 {
-    affine probes[4];
-    bool is_at_rest = true;
-    double way = 0.0, before[3][4], at[3][4];
-    for (int i = 0; i < 4; i++) {
-        probes[i] = rounded_at(outer, inner, i / 3.0);
-        is_at_rest = is_at_rest && memcmp(&probes[i], &probes[0], sizeof *probes) == 0;
+    const uint32_t a = outer->segment_count, b = inner ? inner->segment_count : 1;
+    const uint32_t larger = a > b ? a : b, smaller = a > b ? b : a;
+    for (uint32_t n = larger; n < MOTION_STEPS_MAX; n += larger)
+        if (n % smaller == 0)
+            return n;
+    return larger;
+}
+
+/* Whether the map is the same, to the bit, at so many times and at the opening, which goes to *out_first. */
+static bool is_at_rest(const motion_path *outer, const motion_path *inner, uint32_t count, affine *out_first)
+{
+    *out_first = rounded_at(outer, inner, 0.0);
+    for (uint32_t i = 1; i <= count; i++) {
+        const affine at = rounded_at(outer, inner, (double)i / count);
+        if (memcmp(&at, out_first, sizeof at) != 0)
+            return false;
     }
-    out_steps[0] = probes[0];
-    if (is_at_rest)
+    return true;
+}
+
+uint32_t motion_steps(const motion_path *outer, const motion_path *inner, affine out_steps[MOTION_STEPS_MAX])
+{
+    const uint32_t least = segments_of(outer, inner); /* steps at every bend of the way */
+    double way = 0.0, before[3][4], at[3][4] = {{0.0}};
+    if (is_at_rest(outer, inner, 3 * least, &out_steps[0]))
         return 1;
     product_at(outer, inner, 0.0, before);
-    for (int k = 1; k <= 16; k++) {
+    for (uint32_t k = 1; k <= 16 * least; k++) {
         double square = 0.0;
-        product_at(outer, inner, k / 16.0, at);
+        product_at(outer, inner, k / (16.0 * least), at);
         for (int i = 0; i < 3; i++)
             square += (at[i][3] - before[i][3]) * (at[i][3] - before[i][3]);
         way += sqrt(square);
         memcpy(before, at, sizeof before);
     }
     way += WAY_OF_ROUNDING * sqrt(at[0][3] * at[0][3] + at[1][3] * at[1][3] + at[2][3] * at[2][3]);
-    uint32_t segments = 1;
-    for (; segments < MOTION_STEPS_MAX - 1; segments *= 2) {
+    uint32_t segments = least;
+    for (; 2 * segments < MOTION_STEPS_MAX; segments *= 2) {
         bool suffices = true;
         for (uint32_t i = 0; suffices && i < segments; i++)
             suffices = is_straight(outer, inner, (double)i / segments, (double)(i + 1) / segments, way);

@@ -1,5 +1,6 @@
 /* test_scene_motion.c: meshes with motion steps by the C API: borrowed and copied arrays, doubles and a file have one
- * picture, by any number of threads; changes are seen; what is wrong with them is named. Threads: the context's. */
+ * picture, by any number of threads; changes are seen; what is wrong with them is named. Shapes and instances along
+ * matrices of more than two times. Threads: the context's. */
 /* ctest: sanitize */
 #define _GNU_SOURCE
 #include "fixtures/scene_desk.h"
@@ -293,12 +294,152 @@ static void mistakes_are_named(void **state)
     }
 }
 
+/* --- matrices of more than two times --- */
+
+static const double STAYS[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+/* There and back, of which the two ends say nothing; and the half of the way there, straight on. */
+static const double THERE_AND_BACK[2 * 16] = {1, 0, 0, 1, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1,
+                                              1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+static const double IN_HALVES[2 * 16] = {1, 0, 0, 0.5, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1,
+                                         1, 0, 0, 1,   0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+
+typedef enum shown_as { AS_SHAPE, AS_INSTANCE, AS_SHAPE_IN_OBJECT, AS_EDITED, SHOWN_AS_COUNT } shown_as;
+
+/* A square that goes along these matrices. */
+static void render_way(shown_as how, const double *ends, size_t count, float *out_pixels)
+{
+    desk d;
+    square s;
+    ag_handle handle;
+    ag_instance shown = ag_default_instance();
+    if (how == AS_EDITED)
+        begin_lit_editable(&d);
+    else
+        begin_lit(&d);
+    add_floor(&d);
+    make_square(&s);
+    assert_true(s.shape.end_count == 1 && shown.end_count == 1);
+    s.shape.object = shown.object = how == AS_SHAPE ? NULL : "o";
+    if (how == AS_SHAPE || how == AS_SHAPE_IN_OBJECT) {
+        s.shape.world_from_shape_end = ends;
+        s.shape.end_count = count;
+    } else if (how == AS_INSTANCE) {
+        shown.world_from_object_end = ends;
+        shown.end_count = count;
+    }
+    assert_int_equal(ag_scene_add_shape(d.made, &s.shape, NULL), AG_OK);
+    if (how != AS_SHAPE)
+        assert_int_equal(ag_scene_add_instance(d.made, &shown, &handle), AG_OK);
+    assert_int_equal(ag_scene_commit(d.made), AG_OK);
+    if (how == AS_EDITED) {
+        shown.world_from_object_end = ends;
+        shown.end_count = count;
+        assert_int_equal(ag_scene_change_instance(d.made, handle, &shown), AG_OK);
+        assert_int_equal(ag_scene_commit(d.made), AG_OK);
+    }
+    render(d.context, d.made, out_pixels);
+    if (d.said[0])
+        fail_msg("said: %s", d.said);
+    end(&d);
+}
+
+static double mean_difference(const float *a, const float *b)
+{
+    double sum = 0.0, all = 0.0;
+    for (int i = 0; i < COUNT; i++) {
+        sum += fabs((double)a[i] - (double)b[i]);
+        all += (double)a[i];
+    }
+    return sum / all;
+}
+
+static void matrices_in_between_count(void **state)
+{
+    (void)state;
+    float there_and_back[SHOWN_AS_COUNT][COUNT], still[COUNT], straight[COUNT], in_halves[COUNT], one_end[COUNT];
+    for (shown_as how = AS_SHAPE; how < SHOWN_AS_COUNT; how++) {
+        render_way(how, THERE_AND_BACK, 2, there_and_back[how]);
+        render_way(how, STAYS, 1, still);
+        render_way(how, THERE_AND_BACK, 1, one_end);
+        render_way(how, ASIDE, 1, straight);
+        render_way(how, IN_HALVES, 2, in_halves);
+        assert_memory_equal(one_end, straight, sizeof straight); /* end_count 1 is as it ever was */
+        print_message("%d: there and back: %.4f off what stands still; in halves %.4f off the straight way\n", how,
+                      mean_difference(there_and_back[how], still), mean_difference(in_halves, straight));
+        assert_true(mean_difference(there_and_back[how], still) > 0.05);
+        assert_true(mean_difference(in_halves, straight) < 0.01);
+    }
+    assert_memory_equal(there_and_back[AS_INSTANCE], there_and_back[AS_EDITED], sizeof still);
+}
+
+static void wrong_matrices_in_between_are_told(void **state)
+{
+    (void)state;
+    double wrong[2 * 16];
+    desk d;
+    ag_shape ball = ag_default_shape();
+    begin_lit(&d);
+    ball.type = "sphere";
+    ball.world_from_shape_end = THERE_AND_BACK;
+    for (int i = 0; i < 2; i++) {
+        ball.end_count = i == 0 ? 0 : 129;
+        assert_int_equal(ag_scene_add_shape(d.made, &ball, NULL), AG_ERROR_ARGUMENT);
+        expect_said(&d, "end_count should be from 1 to 128");
+    }
+    ball.world_from_shape_end = wrong;
+    ball.end_count = 2;
+    memcpy(wrong, THERE_AND_BACK, sizeof wrong);
+    wrong[5] = 0.0;
+    assert_int_equal(ag_scene_add_shape(d.made, &ball, NULL), AG_ERROR_ARGUMENT);
+    expect_said(&d, "its matrix cannot be undone");
+    wrong[5] = -1.0; /* and back: turned inside out in between alone */
+    assert_int_equal(ag_scene_add_shape(d.made, &ball, NULL), AG_ERROR_SCENE);
+    expect_said(&d, "turns inside out on its way");
+    ball.world_from_shape_end = NULL; /* of nothing any number will do */
+    ball.end_count = 0;
+    assert_int_equal(ag_scene_add_shape(d.made, &ball, NULL), AG_OK);
+    assert_string_equal(d.said, "");
+    end(&d);
+}
+
+/* Hair of one object along one way shares a tree; along another one it does not. */
+static void curves_share_a_way(void **state)
+{
+    (void)state;
+    static const float STRAND[] = {0, -1, 0, 0, -0.5f, 0, 0, 0.5f, 0, 0, 1, 0};
+    const ag_parameter points = {"P", AG_PARAMETER_POINT3, 12, .floats = STRAND};
+    float pixels[2][COUNT];
+    for (int is_editable = 0; is_editable < 2; is_editable++) {
+        desk d;
+        ag_shape strand = ag_default_shape();
+        if (is_editable)
+            begin_lit_editable(&d);
+        else
+            begin_lit(&d);
+        strand.type = "curve";
+        strand.parameters = &points;
+        strand.parameter_count = 1;
+        strand.end_count = 2;
+        for (int i = 0; i < 4; i++) {
+            strand.world_from_shape_end = i < 2 ? THERE_AND_BACK : IN_HALVES;
+            assert_int_equal(ag_scene_add_shape(d.made, &strand, NULL), AG_OK);
+        }
+        assert_int_equal(ag_scene_commit(d.made), AG_OK);
+        if (is_editable)
+            assert_int_equal(ag_scene_commit_counts(d.made).trees_built, 3); /* the world's, and one of each way */
+        render(d.context, d.made, pixels[is_editable]);
+        end(&d);
+    }
+    assert_memory_equal(pixels[0], pixels[1], sizeof pixels[0]);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(all_ways_have_one_picture), cmocka_unit_test(a_lamp_stands_still_where_it_has_a_surface),
         cmocka_unit_test(a_changed_step_is_seen),    cmocka_unit_test(another_shutter_is_fine),
-        cmocka_unit_test(mistakes_are_named),
+        cmocka_unit_test(mistakes_are_named),        cmocka_unit_test(matrices_in_between_count),
+        cmocka_unit_test(curves_share_a_way),        cmocka_unit_test(wrong_matrices_in_between_are_told),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -54,9 +54,10 @@ AG_API ag_status ag_scene_change_texture(ag_scene *scene, const ag_texture *text
 AG_API ag_status ag_scene_change_image(ag_scene *scene, const char *name, const ag_image *image);
 
 /* Replaces the matrices of a light, an instance or a shape, as in ag_light, ag_instance and ag_shape. world_from_own
- * NULL: the identity, not its former matrix; world_from_own_end NULL: it does not move. Meshes cannot be moved, since
- * the library does not keep their arrays in their own space: use their object's instances, or ag_scene_change_shape.
- * Errors: those of scene_making.h; AG_ERROR_ARGUMENT (the handle is a mesh's; a light has an end). */
+ * NULL: the identity, not its former matrix; world_from_own_end NULL: it does not move. world_from_own_end is one
+ * matrix: for more, use ag_scene_change_instance. Meshes cannot be moved, since the library does not keep their arrays
+ * in their own space: use their object's instances, or ag_scene_change_shape. Errors: those of scene_making.h;
+ * AG_ERROR_ARGUMENT (the handle is a mesh's; a light has an end). */
 AG_API ag_status ag_scene_move(ag_scene *scene, ag_handle handle, const double *world_from_own,
                                const double *world_from_own_end);
 /* Replaces the material of a shape and keeps its arrays; NULL: diffuse, grey. */

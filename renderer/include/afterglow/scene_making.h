@@ -88,8 +88,11 @@ AG_API ag_status ag_scene_set_hint(ag_scene *scene, ag_scene_hint hint, const ch
 /* The following structs are initialised by ag_default_...(). Matrices have 16 numbers, row by row, and multiply column
  * vectors: the last column is the translation, the last row is 0 0 0 1. A matrix holds at the opening of the shutter
  * (pbrt's time 0); for objects that move, a second one holds at its closing (time 1). Between the two, translation is
- * linear and rotation uniform, as in pbrt. The vertices of meshes may move as well: see ag_shape. For matrices of more
- * than two times average pictures with shorter shutters. */
+ * linear and rotation uniform, as in pbrt. Shapes and instances may have more, for evenly spaced times: end_count
+ * matrices stand one after the other at the end's address, of which the last holds at the closing. So of a wheel that
+ * makes a whole turn, or of what goes round a corner, three or more matrices say where it is in between: of two, less
+ * than half a turn apart, rotation takes the shorter way round. The vertices of meshes may move as well: see
+ * ag_shape. */
 
 /* A picture in memory, which replaces the file of its name in each "string filename" of textures and lights added
  * later: packed, top row first; grey, grey and alpha, RGB, or RGB and alpha. One of bytes and floats is set, the other
@@ -121,14 +124,15 @@ AG_API ag_status ag_scene_add_texture(ag_scene *scene, const ag_texture *texture
  * are never used again; 0 is none. out_handle of the functions below may be NULL. */
 typedef uint64_t ag_handle;
 
-/* A shape. A "trianglemesh" or "loopsubdiv" whose vertices move while the shutter is open has a parameter that pbrt
- * does not know, "integer motionsteps", from 1 to 129: so many sets of vertices stand one after the other in "P" (of 3
- * * motionsteps * vertices numbers), and likewise in "N" and "S" where they are there; "uv" and "indices" are those of
- * one set. The sets are for evenly spaced times from the opening of the shutter to its closing, whatever the camera's
- * shutter is, and vertices go straight from one to the next. 1 is a mesh at rest. Errors: AG_ERROR_SCENE (another
- * number of steps, no multiple of it in "P", another type of shape).
+/* A shape. A "trianglemesh" or "loopsubdiv" whose vertices move while the shutter is open, and a "curve" whose points
+ * move that is no "ribbon", has a parameter that pbrt does not know, "integer motionsteps", from 1 to 129: so many sets
+ * of vertices stand one after the other in "P" (of 3 * motionsteps * vertices numbers), and likewise in "N" and "S"
+ * where they are there; "uv", "indices" and widths are those of one set. The sets are for evenly spaced times from the
+ * opening of the shutter to its closing, whatever the camera's shutter is, and vertices go straight from one to the
+ * next. 1 is a mesh at rest. Errors: AG_ERROR_SCENE (another number of steps, no multiple of it in "P", another type of
+ * shape).
  *
- * Such a mesh may move by matrices too, and be part of an object. A light (is_light) stands still as it does at the
+ * Such a shape may move by matrices too, and be part of an object. A light (is_light) stands still as it does at the
  * opening, which a warning says. The photon map has the mean over the shutter of the light on each point, kept where
  * the point is at the opening: a triangle that has no area then gets no indirect light from the map, which a warning
  * says. A pane of glass that bends is traced as any glass. */
@@ -142,6 +146,7 @@ typedef struct ag_shape {
                              by its instances; NULL, the default: the shape is in the world itself */
     const double *world_from_shape;     /* to object space for shapes of objects; NULL, the default: the identity */
     const double *world_from_shape_end; /* NULL, the default: it does not move */
+    size_t end_count;                   /* matrices at world_from_shape_end, 1 to 128; default 1 */
     bool reverse_orientation;           /* default false */
     bool is_light;                      /* it is an area light, with the parameters of AreaLightSource; default false */
     const ag_parameter *light_parameters;
@@ -168,6 +173,7 @@ typedef struct ag_instance {
     const char *object;
     const double *world_from_object;     /* NULL, the default: the identity */
     const double *world_from_object_end; /* NULL, the default: it does not move */
+    size_t end_count;                    /* matrices at world_from_object_end, 1 to 128; default 1 */
 } ag_instance;
 AG_DEFAULT_STRUCT(instance, AG_STRUCT_INSTANCE)
 AG_API ag_status ag_scene_add_instance(ag_scene *scene, const ag_instance *instance, ag_handle *out_handle);

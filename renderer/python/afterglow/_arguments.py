@@ -26,6 +26,17 @@ def encoded(value):
     return made
 
 
+def ends_address(value, kept):
+    """As matrix_address of one matrix or several, (count, 4, 4), and how many there are."""
+    if value is None:
+        return None, 1
+    rows = numpy.require(value, numpy.float64, "CA")
+    if rows.size == 0 or rows.size % 16 != 0 or (rows.size > 16 and rows.shape[-2:] != (4, 4)):
+        raise ValueError("the matrices at the end are 4 x 4 or count x 4 x 4 numbers")
+    kept.append(rows)
+    return rows.ctypes.data, rows.size // 16
+
+
 def matrix_address(value, kept):
     """The address of 16 numbers, row by row, which `kept` keeps; None: no matrix."""
     if value is None:

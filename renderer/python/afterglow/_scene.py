@@ -9,7 +9,7 @@ from typing import Any, Optional
 import numpy
 from numpy.typing import ArrayLike, NDArray
 
-from ._arguments import Parameters, Path, Poll, check_borrowed, encoded, matrix_address, parameter_array
+from ._arguments import Parameters, Path, Poll, check_borrowed, encoded, ends_address, matrix_address, parameter_array
 from ._declarations import (Camera, Image, Instance, Light, Named, RenderSettings, SceneHint, Shape, Status, Texture,
                             TextureValue)
 from ._errors import opened
@@ -111,6 +111,8 @@ class Scene:
         """A shape; gives its handle. object: the name of what it is a part of, which instances show; None: it stands where
         it is. light: the parameters of an AreaLightSource, {} for its defaults; None: it does not shine. Of a "trianglemesh"
         whose vertices move while the shutter is open P is (steps, vertices, 3), N likewise, and "integer motionsteps" is steps.
+        world_from_shape_end: where it is as the shutter closes; or several matrices, (count, 4, 4), for evenly spaced times
+        behind the opening, the last for the closing.
 
         borrow: the arrays of a "trianglemesh", P from vertices() and uv of 32-bit floats, indices of 32-bit integers, are
         used where they are, without a copy, and kept alive; who writes to them says so by instead_of. instead_of: the
@@ -121,18 +123,19 @@ class Scene:
         items, count = parameter_array(parameters, kept)
         light_items, light_count = parameter_array(light, kept)
         shape = Shape(ctypes.sizeof(Shape), encoded(type), items, count, encoded(material), encoded(object),
-                      matrix_address(world_from_shape, kept), matrix_address(world_from_shape_end, kept),
+                      matrix_address(world_from_shape, kept), *ends_address(world_from_shape_end, kept),
                       reverse_orientation, light is not None, light_items, light_count, encoded(medium_inside),
                       encoded(medium_outside), borrow)
         return self._place("shape", shape, instead_of, kept if borrow else None)
 
     def instance(self, object: str, world_from_object: Optional[ArrayLike] = None,
                  world_from_object_end: Optional[ArrayLike] = None, *, instead_of: Optional[int] = None) -> int:
-        """Shows the shapes that were made with that object's name; gives its handle. instead_of: as of shape."""
+        """Shows the shapes that were made with that object's name; gives its handle. world_from_object_end, instead_of: as of
+        shape."""
         kept = []
         return self._place("instance", Instance(ctypes.sizeof(Instance), encoded(object),
                                                 matrix_address(world_from_object, kept),
-                                                matrix_address(world_from_object_end, kept)), instead_of)
+                                                *ends_address(world_from_object_end, kept)), instead_of)
 
     def light(self, type: str, parameters: Parameters = None, *, world_from_light: Optional[ArrayLike] = None,
               medium_outside: Optional[str] = None, instead_of: Optional[int] = None) -> int:

@@ -81,6 +81,8 @@ static ag_status enter_placement(pbrt_parser *parser, const pbrt_call *call, con
 {
     parser->state.world_from_object = at->start;
     parser->state.world_from_object_end = at->end;
+    parser->state.between = at->between;
+    parser->state.between_count = at->between_count;
     parser->state.reverse_orientation = at->reverse_orientation;
     if (at->material)
         AG_TRY(direct(parser, call, pbrt_use_named_material, &at->material, 1, NOTHING));
@@ -147,7 +149,11 @@ ag_status pbrt_builder_mesh(pbrt_builder *b, const pbrt_call *call, const pbrt_p
                             pbrt_items items, bool shines, const pbrt_borrowed *borrowed, shape *out_mesh)
 {
     static const pbrt_area_light LAMP = {.is_set = true, .radiance_texture = SCENE_NO_TEXTURE, .mean_luminance = 1.0};
-    const pbrt_placement alone = {.start = at->start, .end = at->end, .reverse_orientation = at->reverse_orientation};
+    const pbrt_placement alone = {.start = at->start,
+                                  .end = at->end,
+                                  .between = at->between,
+                                  .between_count = at->between_count,
+                                  .reverse_orientation = at->reverse_orientation};
     pbrt_parser *parser = b->parser;
     scene *s = parser->scene;
     const pbrt_mark empty = pbrt_set_mark(parser);

@@ -32,7 +32,9 @@ typedef struct pbrt_items {
 
 /* A placement: transform, material and media. */
 typedef struct pbrt_placement {
-    transform start, end; /* world from its own space, while the shutter is open; of a camera: camera from world */
+    transform start, end;     /* world from its own space, while the shutter is open; of a camera: camera from world */
+    const transform *between; /* [between_count] at evenly spaced times between the two, or NULL; none of a camera */
+    uint32_t between_count;
     bool reverse_orientation;
     const char *material;                       /* may be made later; NULL: diffuse grey */
     const char *object;                         /* that it is part of; NULL: of the world */

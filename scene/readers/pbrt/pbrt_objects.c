@@ -112,9 +112,9 @@ ag_status pbrt_add_object_lamp(pbrt_parser *parser, shape *s, file_location wher
     return AG_OK;
 }
 
-/* Adds an instance along the product of motions, of which inner may be NULL. */
-static ag_status add_moving_instance(pbrt_parser *parser, uint32_t object_index, const motion *outer,
-                                     const motion *inner, file_location where, const char *directive)
+/* Adds an instance along the product of paths, of which inner may be NULL. */
+static ag_status add_moving_instance(pbrt_parser *parser, uint32_t object_index, const motion_path *outer,
+                                     const motion_path *inner, file_location where, const char *directive)
 {
     affine steps[MOTION_STEPS_MAX];
     uint32_t index, count = motion_steps(outer, inner, steps);
@@ -127,16 +127,18 @@ static ag_status add_moving_instance(pbrt_parser *parser, uint32_t object_index,
 
 ag_status pbrt_show_moving_shape(pbrt_parser *parser, uint32_t object_index, file_location where)
 {
-    motion m;
+    motion_path path;
     pbrt_object *o = parser->open_object;
-    AG_TRY(pbrt_make_motion(parser, &parser->state.world_from_object, &parser->state.world_from_object_end, where,
-                            "Shape", &m));
-    if (!o)
-        return add_moving_instance(parser, object_index, &m, NULL, where, "Shape");
-    if (!reserve((void **)&o->parts, o->part_count, &o->part_capacity, sizeof *o->parts))
+    if (o && !reserve((void **)&o->parts, o->part_count, &o->part_capacity, sizeof *o->parts))
         return AG_ERROR_MEMORY;
-    o->parts[o->part_count++] = (pbrt_object_part){object_index, m};
-    return AG_OK;
+    AG_TRY(pbrt_make_path(parser, where, "Shape", &path));
+    if (o) {
+        o->parts[o->part_count++] = (pbrt_object_part){object_index, path};
+        return AG_OK;
+    }
+    const ag_status status = add_moving_instance(parser, object_index, &path, NULL, where, "Shape");
+    free(path.segments);
+    return status;
 }
 
 /* --- instances --- */
@@ -186,23 +188,26 @@ static ag_status add_resting_instance(pbrt_parser *parser, const pbrt_object *o,
     return status;
 }
 
-static ag_status add_instance(pbrt_parser *parser, const pbrt_object *o, const transform *start, const transform *end,
-                              file_location where)
+/* An instance of the object along the current transform. */
+static ag_status add_instance(pbrt_parser *parser, const pbrt_object *o, file_location where)
 {
-    bool is_moving = memcmp(start->m, end->m, sizeof start->m) != 0;
+    const transform *start = &parser->state.world_from_object;
+    const bool is_moving = pbrt_is_moving(parser);
     AG_TRY(add_lamps(parser, o, start, where));
     if (!is_moving)
         AG_TRY(add_resting_instance(parser, o, start, where));
     if (!is_moving && o->part_count == 0)
         return AG_OK;
-    motion m;
-    AG_TRY(pbrt_make_motion(parser, start, end, where, "ObjectInstance", &m));
+    motion_path path;
+    AG_TRY(pbrt_make_path(parser, where, "ObjectInstance", &path));
+    ag_status status = AG_OK;
     if (is_moving)
-        AG_TRY(add_moving_instance(parser, o->object_index, &m, NULL, where, "ObjectInstance"));
-    for (size_t i = 0; i < o->part_count; i++)
-        AG_TRY(add_moving_instance(parser, o->parts[i].object_index, &m, &o->parts[i].object_from_part, where,
-                                   "ObjectInstance"));
-    return AG_OK;
+        status = add_moving_instance(parser, o->object_index, &path, NULL, where, "ObjectInstance");
+    for (size_t i = 0; i < o->part_count && status == AG_OK; i++)
+        status = add_moving_instance(parser, o->parts[i].object_index, &path, &o->parts[i].object_from_part, where,
+                                     "ObjectInstance");
+    free(path.segments);
+    return status;
 }
 
 /* The object of an instance: in a file it may come later, for a call it has to be there. */
@@ -230,7 +235,6 @@ ag_status pbrt_object_instance(pbrt_parser *parser, file_location where)
 {
     char *name;
     uint32_t object;
-    const pbrt_state *state = &parser->state;
     AG_TRY(pbrt_read_string(parser, "ObjectInstance", "a quoted name", &name, NULL));
     if (parser->open_object) {
         free(name);
@@ -241,9 +245,7 @@ ag_status pbrt_object_instance(pbrt_parser *parser, file_location where)
     AG_TRY(status);
     pbrt_object *o = &parser->objects[object];
     if (!pbrt_is_flattened(parser, where, "ObjectInstance"))
-        status = o->is_defined
-                     ? add_instance(parser, o, &state->world_from_object, &state->world_from_object_end, where)
-                     : keep_early_instance(parser, object, where);
+        status = o->is_defined ? add_instance(parser, o, where) : keep_early_instance(parser, object, where);
     o->is_shown = o->is_shown || status == AG_OK;
     return status;
 }
@@ -255,7 +257,9 @@ ag_status pbrt_end_objects(pbrt_parser *parser)
         const pbrt_object *o = &parser->objects[early->object];
         if (!o->is_defined)
             return pbrt_error(parser, early->where, strlen("ObjectInstance"), "no object is named \"%s\"", o->name);
-        AG_TRY(add_instance(parser, o, &early->start, &early->end, early->where));
+        parser->state.world_from_object = early->start;
+        parser->state.world_from_object_end = early->end;
+        AG_TRY(add_instance(parser, o, early->where));
     }
     return AG_OK;
 }
@@ -266,6 +270,8 @@ void pbrt_reset_objects(pbrt_parser *parser)
         pbrt_object *o = &parser->objects[i];
         for (size_t k = 0; k < o->lamp_count; k++)
             shape_reset(&o->lamps[k].shape);
+        for (size_t k = 0; k < o->part_count; k++)
+            free(o->parts[k].object_from_part.segments);
         free(o->lamps);
         free(o->parts);
         free(o->name);

@@ -183,6 +183,7 @@ void pbrt_parser_destroy(pbrt_parser *parser)
     free(parser->named_materials);
     free(parser->named_media);
     free(parser->coordinate_systems);
+    free(parser->curves_between);
     free(parser->saved);
     free(parser->top_directory);
     free(parser);

@@ -100,6 +100,8 @@ typedef struct pbrt_state {
     /* At the start and at the end of TransformTimes; before WorldBegin: camera_from_world. What does not move looks at
      * the start alone. */
     transform world_from_object, world_from_object_end;
+    const transform *between; /* of calls alone: [between_count] at evenly spaced times between the two, borrowed */
+    uint32_t between_count;
     bool start_is_active, end_is_active; /* whether directives change them; at least one is */
     bool is_flattened;                   /* by a transform that cannot be undone: what it would apply to is left out */
     bool reverse_orientation;
@@ -142,8 +144,8 @@ typedef struct pbrt_object_lamp {
 
 /* A shape that moves within an object: an object of its own, as Embree knows one level of instances only. */
 typedef struct pbrt_object_part {
-    uint32_t object_index; /* the scene's */
-    motion object_from_part;
+    uint32_t object_index;        /* the scene's */
+    motion_path object_from_part; /* its segments are owned */
 } pbrt_object_part;
 
 typedef struct pbrt_object {
@@ -233,7 +235,8 @@ typedef struct pbrt_parser {
     /* The object that curves were last put into for a transform that moves or stretches them, with that transform and
      * the object around it: curves that follow join it. SCENE_NO_OBJECT: none yet. */
     uint32_t curves_object_index, curves_object_around;
-    transform curves_start, curves_end;
+    transform curves_start, curves_end, *curves_between; /* the last: [curves_between_count], owned */
+    uint32_t curves_between_count;
     pbrt_early_instance *early_instances;
     size_t early_instance_count, early_instance_capacity;
     size_t lamp_copy_count, lamp_copy_vertex_count;         /* that instances have made */
@@ -362,6 +365,8 @@ bool pbrt_is_moving(const pbrt_parser *parser);
  * directive. */
 ag_status pbrt_make_motion(pbrt_parser *parser, const transform *start, const transform *end, file_location where,
                            const char *directive, motion *out_motion);
+/* The same past all that the graphics state has between the two; the path's segments are to be freed. */
+ag_status pbrt_make_path(pbrt_parser *parser, file_location where, const char *directive, motion_path *out_path);
 /* Whether the current transform cannot be undone; then a warning, once for each of what, that it is left out. */
 bool pbrt_is_flattened(pbrt_parser *parser, file_location where, const char *what);
 /* A warning, once for each of what, that it does not move. */

@@ -4,6 +4,7 @@
  * Flow: pbrt_parser -> [here] -> scene.shapes. Threads: one per scene. */
 #include "pbrt/pbrt_meshes.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 /* Whether the last shape of the scene has this name, or as little one. */
@@ -186,9 +187,10 @@ static ag_status read_kind(pbrt_parser *parser, parameter_list *list)
                    {"curve", pbrt_curve}};
     AG_TRY(read_alpha(parser, list));
     if (!pbrt_has_motion_steps(list->name) && parameter_list_find(list, "motionsteps"))
-        return pbrt_refuse(parser, list, "motionsteps",
-                           "Shape \"%s\" cannot have \"motionsteps\", as \"trianglemesh\" and \"loopsubdiv\" can",
-                           list->name);
+        return pbrt_refuse(
+            parser, list, "motionsteps",
+            "Shape \"%s\" cannot have \"motionsteps\", as \"trianglemesh\", \"loopsubdiv\" and \"curve\" can",
+            list->name);
     if (parser->made_mesh)
         return is_nothing(parser) ? AG_OK : add_made_mesh(parser, list);
     for (size_t i = 0; i < sizeof READERS / sizeof *READERS; i++)
@@ -228,6 +230,18 @@ static bool is_stretched_curve(const pbrt_parser *parser, const parameter_list *
     return is_curve(list) && !(transform_uniform_scale(&parser->state.world_from_object) > 0.0);
 }
 
+/* Whether the current transform goes the same way between its ends as that of the curves before. */
+static bool is_same_between(const pbrt_parser *parser)
+{
+    const pbrt_state *state = &parser->state;
+    if (parser->curves_between_count != state->between_count)
+        return false;
+    for (uint32_t i = 0; i < state->between_count; i++)
+        if (memcmp(parser->curves_between[i].m, state->between[i].m, sizeof state->between[i].m) != 0)
+            return false;
+    return true;
+}
+
 /* Whether curves have been put there just before. */
 static bool joins_curves(const pbrt_parser *parser, const parameter_list *list)
 {
@@ -237,7 +251,28 @@ static bool joins_curves(const pbrt_parser *parser, const parameter_list *list)
            is_last_named(parser->scene, name && name->strings ? name->strings[0] : NULL) &&
            parser->curves_object_around == parser->shapes_object_index &&
            memcmp(parser->curves_start.m, state->world_from_object.m, sizeof parser->curves_start.m) == 0 &&
-           memcmp(parser->curves_end.m, state->world_from_object_end.m, sizeof parser->curves_end.m) == 0;
+           memcmp(parser->curves_end.m, state->world_from_object_end.m, sizeof parser->curves_end.m) == 0 &&
+           is_same_between(parser);
+}
+
+/* Notes that curves have been put into an object of their own, along the current transform. */
+static ag_status note_curves(pbrt_parser *parser, uint32_t object_index)
+{
+    const pbrt_state *state = &parser->state;
+    const size_t count = state->between_count;
+    transform *between = count > 0 ? malloc(count * sizeof *between) : NULL;
+    if (count > 0 && !between)
+        return AG_ERROR_MEMORY;
+    if (count > 0)
+        memcpy(between, state->between, count * sizeof *between);
+    free(parser->curves_between);
+    parser->curves_between = between;
+    parser->curves_between_count = state->between_count;
+    parser->curves_object_index = object_index;
+    parser->curves_object_around = parser->shapes_object_index;
+    parser->curves_start = state->world_from_object;
+    parser->curves_end = state->world_from_object_end;
+    return AG_OK;
 }
 
 /* A shape that moves is, as in pbrt, an object of its own in its own space, of which there is one instance. */
@@ -245,6 +280,7 @@ static ag_status read_moving_shape(pbrt_parser *parser, parameter_list *list)
 {
     pbrt_state *state = &parser->state;
     const transform start = state->world_from_object, end = state->world_from_object_end;
+    const uint32_t between_count = state->between_count;
     uint32_t object_index, object_around = parser->shapes_object_index, count = parser->scene->shape_count;
     bool is_shown = joins_curves(parser, list);
     if (is_shown)
@@ -252,19 +288,17 @@ static ag_status read_moving_shape(pbrt_parser *parser, parameter_list *list)
     else
         AG_TRY(scene_add_object(parser->scene, &object_index));
     state->world_from_object = state->world_from_object_end = transform_identity();
+    state->between_count = 0;
     parser->shapes_object_index = object_index;
     ag_status status = read_shape(parser, list);
     parser->shapes_object_index = object_around;
     state->world_from_object = start;
     state->world_from_object_end = end;
+    state->between_count = between_count;
     if (status != AG_OK || is_shown || parser->scene->shape_count == count) /* the last: it was left out */
         return status;
-    if (is_curve(list)) {
-        parser->curves_object_index = object_index;
-        parser->curves_object_around = object_around;
-        parser->curves_start = start;
-        parser->curves_end = end;
-    }
+    if (is_curve(list))
+        AG_TRY(note_curves(parser, object_index));
     return pbrt_show_moving_shape(parser, object_index, list->where);
 }
 

@@ -64,11 +64,12 @@ bool pbrt_is_flattened(pbrt_parser *parser, file_location where, const char *wha
 bool pbrt_is_moving(const pbrt_parser *parser)
 {
     const transform *start = &parser->state.world_from_object, *end = &parser->state.world_from_object_end;
-    return memcmp(start->m, end->m, sizeof start->m) != 0;
+    return parser->state.between_count > 0 || memcmp(start->m, end->m, sizeof start->m) != 0;
 }
 
-ag_status pbrt_make_motion(pbrt_parser *parser, const transform *start, const transform *end, file_location where,
-                           const char *directive, motion *out_motion)
+/* One of a path's segments, which take equally long. */
+static ag_status make_segment(pbrt_parser *parser, const transform *start, const transform *end, uint32_t index,
+                              uint32_t count, file_location where, const char *directive, motion *out_motion)
 {
     double times[2] = {0.0, 1.0}; /* of the shutter */
     const camera *c = &parser->scene->camera;
@@ -76,13 +77,37 @@ ag_status pbrt_make_motion(pbrt_parser *parser, const transform *start, const tr
         times[0] = (double)c->shutter_open, times[1] = (double)c->shutter_close;
     const double *span = parser->transform_times;
     for (int i = 0; i < 2; i++)
-        times[i] = (times[i] - span[0]) / (span[1] - span[0]);
+        times[i] = (times[i] - span[0]) / (span[1] - span[0]) * count - index;
     if (!motion_make(start, end, times[0], times[1], out_motion))
         return pbrt_error(
             parser, where, strlen(directive),
             "%s moves by way of a transform that cannot be undone (it is not affine, too small or too large, "
             "or turns inside out on its way)",
             directive);
+    return AG_OK;
+}
+
+ag_status pbrt_make_motion(pbrt_parser *parser, const transform *start, const transform *end, file_location where,
+                           const char *directive, motion *out_motion)
+{
+    return make_segment(parser, start, end, 0, 1, where, directive, out_motion);
+}
+
+ag_status pbrt_make_path(pbrt_parser *parser, file_location where, const char *directive, motion_path *out_path)
+{
+    const pbrt_state *state = &parser->state;
+    const uint32_t count = state->between_count + 1;
+    motion *segments = malloc(count * sizeof *segments);
+    ag_status status = segments ? AG_OK : AG_ERROR_MEMORY;
+    for (uint32_t i = 0; i < count && status == AG_OK; i++)
+        status = make_segment(parser, i > 0 ? &state->between[i - 1] : &state->world_from_object,
+                              i < count - 1 ? &state->between[i] : &state->world_from_object_end, i, count, where,
+                              directive, &segments[i]);
+    if (status != AG_OK) {
+        free(segments);
+        return status;
+    }
+    *out_path = (motion_path){segments, count};
     return AG_OK;
 }
 

@@ -3,6 +3,8 @@
  * pbrt_builder -> [here] -> scene. Threads: one per scene. */
 #include "pbrt/pbrt_private.h"
 
+#include <stdlib.h>
+
 static bool is_used(const pbrt_parser *parser, size_t named)
 {
     return named != PBRT_NO_MEDIUM && parser->named_media[named].is_used;
@@ -40,8 +42,8 @@ void pbrt_go_back(pbrt_parser *parser, const pbrt_mark *mark)
         light_reset(&s->lights[--s->light_count]);
     while (o && o->lamp_count > mark->lamp_count)
         shape_reset(&o->lamps[--o->lamp_count].shape);
-    if (o)
-        o->part_count = mark->part_count;
+    while (o && o->part_count > mark->part_count)
+        free(o->parts[--o->part_count].object_from_part.segments);
     s->instance_count = mark->instance_count;
     s->instance_step_count = mark->instance_step_count;
     s->camera = mark->camera;
