@@ -446,7 +446,8 @@ ag_status scene_commit(scene *s, run_context *run, const char *isa)
     ag_status status = s->before ? share_surfaces(s) : AG_OK;
     for (uint32_t i = 0; i < s->shape_count && status == AG_OK; i++) {
         status = shape_commit(&s->shapes[i]);
-        s->has_deforming = s->has_deforming || shape_is_deforming(&s->shapes[i]);
+        s->has_deforming =
+            s->has_deforming || shape_is_deforming(&s->shapes[i]) || shape_is_moving_curves(&s->shapes[i]);
         s->has_interfaces = s->has_interfaces || material_may_be_interface(s, s->shapes[i].material_index);
         s->has_panes = s->has_panes || pane_may_be_of(s, s->shapes[i].material_index);
     }

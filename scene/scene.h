@@ -81,7 +81,7 @@ typedef struct scene {
 
     /* set by scene_commit */
     uint32_t *object_shapes;     /* indices of the shapes that belong to objects, object by object */
-    bool has_deforming;          /* meshes whose vertices move while the shutter is open */
+    bool has_deforming;          /* meshes or curves whose points move while the shutter is open */
     bool has_motion;             /* they, instances or the camera move then: what happens depends on the time */
     vec3 bounds_min, bounds_max; /* of all shapes, where instances put them; min > max when there is none */
     vec3 bounding_center;

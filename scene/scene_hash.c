@@ -4,6 +4,7 @@
 
 #include "light/light_type.h"
 #include "scene.h"
+#include "shape/curves.h"
 #include "shape/mesh_motion.h"
 
 #define ADD(value) HASH128_ADD(h, value)
@@ -120,10 +121,12 @@ static void add_quadric(hash128 *h, const quadric *q)
 
 static void add_curves(hash128 *h, const curves *c)
 {
-    size_t points = (size_t)c->segment_count * 4;
+    const size_t points = curves_points_of_each(c) * c->segment_count;
     ADD(c->type);
     add_array(h, c->points, points, sizeof *c->points);
     add_array(h, c->normals, points, sizeof *c->normals);
+    if (c->motion_segments > 0) /* as of meshes */
+        ADD(c->motion_segments);
     add_array(h, c->spans, c->segment_count, sizeof *c->spans);
 }
 

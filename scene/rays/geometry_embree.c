@@ -5,6 +5,7 @@
 
 #include "atomics.h"
 #include "shape/alpha.h"
+#include "shape/curves.h"
 #include "shape/quadric.h"
 
 /* --- disks and ellipsoids: user geometry, one primitive each --- */
@@ -116,10 +117,12 @@ static RTCGeometry make_curves(RTCDevice device, const shape *s)
                                                  [CURVES_CYLINDER] = RTC_GEOMETRY_TYPE_ROUND_BEZIER_CURVE,
                                                  [CURVES_RIBBON] = RTC_GEOMETRY_TYPE_NORMAL_ORIENTED_BEZIER_CURVE};
     const curves *c = &s->as.curves;
-    size_t point_count = 4 * (size_t)c->segment_count;
+    const size_t point_count = curves_points_of_each(c) * c->segment_count;
     RTCGeometry geometry = rtcNewGeometry(device, TYPES[c->type]);
-    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4, c->points, 0, sizeof *c->points,
-                               point_count);
+    rtcSetGeometryTimeStepCount(geometry, c->motion_segments + 1);
+    for (unsigned k = 0; k <= c->motion_segments; k++) /* indices are those of the first step: others begin later */
+        rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, k, RTC_FORMAT_FLOAT4, c->points + 4 * (size_t)k, 0,
+                                   sizeof *c->points, point_count - 4 * (size_t)k);
     rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT, c->first_points, 0,
                                sizeof *c->first_points, c->segment_count);
     if (c->type == CURVES_RIBBON)

@@ -1,15 +1,13 @@
 /* curves.c: see curves.h. Points are found in double precision from Embree's parameter, which is a start only: it is
  * settled by Newton's method, so that what Embree gives up for speed does not show.
- * Threads: curves_reserve and curves_join by one thread; the rest read only. */
+ * Threads: read only. */
 #include "shape/curves.h"
 
 #include "math/sampling.h"
-#include "status.h"
 
-#include <stdlib.h>
 #include <string.h>
 
-enum { SETTLE_STEPS = 3, LENGTH_PARTS = 16, CAPACITY_MIN = 4, SEGMENTS_MAX = 1 << 28 };
+enum { SETTLE_STEPS = 3, LENGTH_PARTS = 16 };
 
 /* How far off a tube's surface rays start, as a share of its radius: what Embree's own search for the surface loses. */
 static const float TUBE_EPSILON_RELATIVE = 0x1p-9f;
@@ -20,91 +18,34 @@ static const float FLAT_EPSILON_RELATIVE = 1.02f;
  * start off by they land off by. */
 static const float RIBBON_EPSILON_RELATIVE = 0x1p-12f;
 
-/* --- memory --- */
-
-static bool enlarge(void *items, size_t count, size_t spare, size_t item_bytes)
-{
-    void *old, *larger;
-    memcpy(&old, items, sizeof old);
-    larger = realloc(old, (count + spare) * item_bytes);
-    if (larger)
-        memcpy(items, &larger, sizeof larger);
-    return larger != NULL;
-}
-
-ag_status curves_reserve(curves *c, uint32_t segment_count)
-{
-    if (segment_count > SEGMENTS_MAX)
-        return AG_ERROR_MEMORY;
-    if (segment_count <= c->capacity)
-        return AG_OK;
-    uint32_t capacity = c->capacity ? c->capacity : CAPACITY_MIN;
-    while (capacity < segment_count)
-        capacity *= 2;
-    size_t points = 4 * (size_t)capacity;
-    if (!enlarge(&c->points, points, 0, sizeof *c->points) || !enlarge(&c->spans, capacity, 0, sizeof *c->spans) ||
-        !enlarge(&c->first_points, capacity, 0, sizeof *c->first_points) ||
-        (c->type == CURVES_RIBBON && !enlarge(&c->normals, points, 1, sizeof *c->normals)))
-        return AG_ERROR_MEMORY;
-    for (uint32_t i = c->capacity; i < capacity; i++)
-        c->first_points[i] = 4 * i;
-    c->capacity = capacity;
-    return AG_OK;
-}
-
-void curves_reset(curves *c)
-{
-    if (!c->holder_count || --*c->holder_count == 0) {
-        free(c->points);
-        free(c->spans);
-        free(c->first_points);
-        free(c->normals);
-        free(c->holder_count);
-    }
-    *c = (curves){0};
-}
-
-bool curves_can_be_joined(const shape *s, const shape *with)
-{
-    return s->kind == SHAPE_CURVES && with->kind == SHAPE_CURVES && s->as.curves.type == with->as.curves.type &&
-           !s->as.curves.holder_count && s->flip_normal == with->flip_normal &&
-           s->medium_inside == with->medium_inside && s->medium_outside == with->medium_outside &&
-           s->material_index == with->material_index && s->alpha == with->alpha &&
-           s->alpha_texture == with->alpha_texture && s->alpha_cutoff == with->alpha_cutoff &&
-           s->light_index == SHAPE_NO_LIGHT && with->light_index == SHAPE_NO_LIGHT &&
-           s->object_index == with->object_index &&
-           s->as.curves.segment_count + with->as.curves.segment_count <= SEGMENTS_MAX;
-}
-
-ag_status curves_join(curves *c, const curves *from)
-{
-    uint32_t before = c->segment_count;
-    AG_TRY(curves_reserve(c, before + from->segment_count));
-    memcpy(c->points + 4 * (size_t)before, from->points, 4 * (size_t)from->segment_count * sizeof *c->points);
-    memcpy(c->spans + before, from->spans, from->segment_count * sizeof *c->spans);
-    if (c->normals)
-        memcpy(c->normals + 4 * (size_t)before, from->normals, 4 * (size_t)from->segment_count * sizeof *c->normals);
-    c->segment_count += from->segment_count;
-    return AG_OK;
-}
-
-/* --- extent --- */
-
-void curves_find_bounds(const shape *s, vec3 *out_min, vec3 *out_max)
-{
-    const curves *c = &s->as.curves;
-    vec3 low = {INFINITY, INFINITY, INFINITY}, high = {-INFINITY, -INFINITY, -INFINITY};
-    for (size_t i = 0; i < 4 * (size_t)c->segment_count; i++) { /* a Bezier curve is within its control points' hull */
-        curve_point p = c->points[i];
-        vec3 reach = {p.radius, p.radius, p.radius};
-        low = vec3_min(low, vec3_sub(p.at, reach));
-        high = vec3_max(high, vec3_add(p.at, reach));
-    }
-    *out_min = low;
-    *out_max = high;
-}
-
 /* --- points of the axis --- */
+
+/* A segment as it is at a time of the shutter: its control points. */
+typedef struct posed {
+    uint32_t index;
+    curve_point points[4];
+} posed;
+
+static float mixed(float a, float b, float t) { return (1.0f - t) * a + t * b; }
+
+static posed pose_of(const curves *c, uint32_t segment, float time)
+{
+    const curve_point *q = c->points + curves_points_of_each(c) * segment;
+    posed at = {.index = segment};
+    if (c->motion_segments == 0) {
+        memcpy(at.points, q, sizeof at.points);
+        return at;
+    }
+    const float passed = fminf(fmaxf(time, 0.0f), 1.0f) * (float)c->motion_segments;
+    const uint32_t last = c->motion_segments - 1, whole = (uint32_t)passed, step = whole < last ? whole : last;
+    const float t = passed - (float)step;
+    for (size_t k = 0; k < 4; k++) {
+        const curve_point a = q[4 * (size_t)step + k], b = q[4 * ((size_t)step + 1) + k];
+        at.points[k] = (curve_point){{mixed(a.at.x, b.at.x, t), mixed(a.at.y, b.at.y, t), mixed(a.at.z, b.at.z, t)},
+                                     mixed(a.radius, b.radius, t)};
+    }
+    return at;
+}
 
 typedef struct axis_point {
     double p[3], d[3], dd[3]; /* the middle line, and its derivatives by u */
@@ -150,9 +91,9 @@ static void any_across(const double unit[3], double out[3])
 
 static vec3 rounded(const double v[3]) { return (vec3){(float)v[0], (float)v[1], (float)v[2]}; }
 
-static axis_point find_axis_point(const curves *c, uint32_t segment, double u)
+static axis_point find_axis_point(const posed *segment, double u)
 {
-    const curve_point *q = c->points + 4 * (size_t)segment;
+    const curve_point *q = segment->points;
     const double w = 1.0 - u, b[4] = {w * w * w, 3.0 * u * w * w, 3.0 * u * u * w, u * u * u};
     const double d[3] = {3.0 * w * w, 6.0 * u * w, 3.0 * u * u};
     double x[4][4];
@@ -182,11 +123,10 @@ static axis_point find_axis_point(const curves *c, uint32_t segment, double u)
 
 /* The point of the axis whose cross-section contains `point`; with a direction, the one that is nearest as seen along
  * it. u: near it. */
-static axis_point settle(const curves *c, uint32_t segment, const double point[3], const double *direction,
-                         double *in_out_u)
+static axis_point settle(const posed *segment, const double point[3], const double *direction, double *in_out_u)
 {
     double u = fmin(fmax(*in_out_u, 0.0), 1.0);
-    axis_point at = find_axis_point(c, segment, u);
+    axis_point at = find_axis_point(segment, u);
     for (int step = 0; step < SETTLE_STEPS; step++) {
         double to[3], d[3];
         for (int i = 0; i < 3; i++)
@@ -204,7 +144,7 @@ static axis_point settle(const curves *c, uint32_t segment, const double point[3
         if (!(fabs(moved - u) < 0.25)) /* further than Embree errs: another part of the same curve */
             break;
         u = moved;
-        at = find_axis_point(c, segment, u);
+        at = find_axis_point(segment, u);
     }
     *in_out_u = u;
     return at;
@@ -259,12 +199,12 @@ static ribbon_side ribbon_across(const curves *c, uint32_t segment, double u, co
 }
 
 /* Embree's ribbon is ruled between two cubics, which have the width and the turn of the normals at their ends. */
-static ribbon_edge find_ribbon_edge(const curves *c, uint32_t segment)
+static ribbon_edge find_ribbon_edge(const curves *c, const posed *segment)
 {
     ribbon_edge edge;
     for (int end = 0; end < 2; end++) {
-        axis_point at = find_axis_point(c, segment, end);
-        ribbon_side a = ribbon_across(c, segment, end, &at, false);
+        axis_point at = find_axis_point(segment, end);
+        ribbon_side a = ribbon_across(c, segment->index, end, &at, false);
         for (int i = 0; i < 3; i++) {
             double d = at.radius * a.d[i], slope = at.slope * a.d[i] + at.radius * a.slope[i];
             edge.b[end ? 3 : 0][i] = d;
@@ -293,8 +233,9 @@ double curves_fit_ribbon(curves *c, uint32_t segment)
     double even[POINTS + 1][3], largest = 0.0, widest = 0.0;
     vec3 fit[4];
     axis_point at;
+    const posed still = pose_of(c, segment, 0.0f);
     for (int k = 0; k <= POINTS; k++) {
-        at = find_axis_point(c, segment, (double)k / POINTS);
+        at = find_axis_point(&still, (double)k / POINTS);
         ribbon_side a = ribbon_across(c, segment, (double)k / POINTS, &at, true);
         for (int i = 0; i < 3; i++)
             even[k][i] = at.radius * a.d[i];
@@ -310,10 +251,10 @@ double curves_fit_ribbon(curves *c, uint32_t segment)
         fit[k > 0 ? 2 : 1] = rounded(slope);
     }
     memcpy(c->normals + 4 * (size_t)segment, fit, sizeof fit);
-    ribbon_edge edge = find_ribbon_edge(c, segment);
+    ribbon_edge edge = find_ribbon_edge(c, &still);
     for (int k = 1; k < POINTS; k++) {
         ribbon_side side = ribbon_side_at(&edge, (double)k / POINTS);
-        at = find_axis_point(c, segment, (double)k / POINTS);
+        at = find_axis_point(&still, (double)k / POINTS);
         for (int i = 0; i < 3; i++)
             side.d[i] -= even[k][i];
         take_across(side.d, at.t); /* an edge that slides along itself is where it was */
@@ -324,12 +265,12 @@ double curves_fit_ribbon(curves *c, uint32_t segment)
 
 /* The point of a ribbon nearest to one that is all but on it: along it by u, which comes in near it, and across by
  * *out_v in [-1, 1]. Sets the derivatives by both, along and across. */
-static axis_point settle_on_ribbon(const curves *c, uint32_t segment, const double point[3], double *in_out_u,
+static axis_point settle_on_ribbon(const curves *c, const posed *segment, const double point[3], double *in_out_u,
                                    double *out_v, double out_normal[3])
 {
     const ribbon_edge edge = find_ribbon_edge(c, segment);
     double u = fmin(fmax(*in_out_u, 0.0), 1.0), v = 0.0, along[3], across[3];
-    axis_point at = find_axis_point(c, segment, u);
+    axis_point at = find_axis_point(segment, u);
     for (int step = 0;; step++) {
         ribbon_side side = ribbon_side_at(&edge, u);
         double to[3], square = dot(side.d, side.d);
@@ -352,7 +293,7 @@ static axis_point settle_on_ribbon(const curves *c, uint32_t segment, const doub
             break;
         v += (dot(to, across) * aa - dot(to, along) * ab) / determinant;
         u = moved;
-        at = find_axis_point(c, segment, u);
+        at = find_axis_point(segment, u);
     }
     cross(along, across, out_normal);
     if (!make_unit(out_normal))
@@ -374,10 +315,11 @@ static void tube_normal(const axis_point *at, const double around[3], double out
             out[i] = around[i];
 }
 
-void curves_surface_at(const shape *s, uint32_t primitive_index, float u, vec3 position, vec3 direction,
+void curves_surface_at(const shape *s, uint32_t primitive_index, float u, vec3 position, vec3 direction, float time,
                        surface_hit *out_hit)
 {
     const curves *c = &s->as.curves;
+    const posed segment = pose_of(c, primitive_index, time);
     surface_hit *h = out_hit;
     double x[3] = {(double)position.x, (double)position.y, (double)position.z}, off[3], normal[3] = {0}, aside[3];
     double way[3] = {(double)direction.x, (double)direction.y, (double)direction.z};
@@ -385,9 +327,9 @@ void curves_surface_at(const shape *s, uint32_t primitive_index, float u, vec3 p
     bool is_seen = make_unit(way);
     axis_point at;
     if (c->type == CURVES_RIBBON)
-        at = settle_on_ribbon(c, primitive_index, x, &along, &v, normal);
+        at = settle_on_ribbon(c, &segment, x, &along, &v, normal);
     else
-        at = settle(c, primitive_index, x, c->type == CURVES_FLAT && is_seen ? way : NULL, &along);
+        at = settle(&segment, x, c->type == CURVES_FLAT && is_seen ? way : NULL, &along);
     for (int i = 0; i < 3; i++)
         off[i] = x[i] - at.p[i];
 
@@ -429,10 +371,9 @@ void curves_surface_at(const shape *s, uint32_t primitive_index, float u, vec3 p
         h->geometric_normal = vec3_negate(h->geometric_normal);
     h->shading_normal = h->geometric_normal;
     h->uv = (vec2){span.x + (float)along * (span.y - span.x), (float)fmin(fmax(0.5 + 0.5 * v, 0.0), 1.0)};
-    const curve_point *q = c->points + 4 * (size_t)primitive_index;
     float largest = 0.0f;
     for (int k = 0; k < 4; k++)
-        largest = fmaxf(largest, vec3_max_abs(q[k].at) + q[k].radius);
+        largest = fmaxf(largest, vec3_max_abs(segment.points[k].at) + segment.points[k].radius);
     h->epsilon = (float)epsilon + largest * SHAPE_EPSILON_RELATIVE;
     h->is_flat = false;
     h->is_strand = true;
@@ -446,13 +387,14 @@ surface_differentials curves_differentials(const shape *s, const surface_hit *hi
     vec2 span = c->spans[hit->primitive_index];
     double share = (double)span.y - (double)span.x;
     double u = fmin(fmax(((double)hit->uv.x - (double)span.x) / share, 0.0), 1.0);
-    axis_point at = find_axis_point(c, hit->primitive_index, u);
+    const posed segment = pose_of(c, hit->primitive_index, hit->time);
+    axis_point at = find_axis_point(&segment, u);
     double sign = s->flip_normal ? -1.0 : 1.0, aside[3];
     double normal[3] = {sign * (double)hit->geometric_normal.x, sign * (double)hit->geometric_normal.y,
                         sign * (double)hit->geometric_normal.z};
     surface_differentials d = {0};
     if (c->type == CURVES_RIBBON) {
-        ribbon_edge edge = find_ribbon_edge(c, hit->primitive_index);
+        ribbon_edge edge = find_ribbon_edge(c, &segment);
         ribbon_side side = ribbon_side_at(&edge, u);
         for (int i = 0; i < 3; i++)
             aside[i] = (at.d[i] + (2.0 * (double)hit->uv.y - 1.0) * side.slope[i]) / share;
@@ -472,10 +414,12 @@ float curves_area(const shape *s)
 {
     const curves *c = &s->as.curves;
     double area = 0.0, around = c->type == CURVES_CYLINDER ? 2.0 * (double)AG_PI : 2.0;
-    for (uint32_t k = 0; k < c->segment_count; k++)
+    for (uint32_t k = 0; k < c->segment_count; k++) {
+        const posed segment = pose_of(c, k, 0.0f);
         for (int i = 0; i < LENGTH_PARTS; i++) {
-            axis_point at = find_axis_point(c, k, (i + 0.5) / LENGTH_PARTS);
+            axis_point at = find_axis_point(&segment, (i + 0.5) / LENGTH_PARTS);
             area += around * at.radius * at.speed / LENGTH_PARTS;
         }
+    }
     return (float)area;
 }

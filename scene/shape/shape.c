@@ -368,7 +368,7 @@ static void surface_at(const shape *s, uint32_t primitive_index, float u, float 
     if (s->kind == SHAPE_MESH)
         mesh_surface_at(s, primitive_index, u, v, time, out_hit);
     else if (s->kind == SHAPE_CURVES)
-        curves_surface_at(s, primitive_index, u, position, direction, out_hit);
+        curves_surface_at(s, primitive_index, u, position, direction, time, out_hit);
     else
         quadric_surface_at(s, position, with_uv, out_hit);
     out_hit->has_medium_interface = s->has_medium_interface;

@@ -78,10 +78,13 @@ enum { CURVES_FLAT_PIECES = 8 };
 typedef struct curves {
     curves_type type;
     uint32_t segment_count, capacity;
-    curve_point *points;    /* 4 per segment */
+    /* Above 0 the points move: each segment has this many more sets of four behind its first, for evenly spaced times
+     * from the shutter's opening to its closing, straight in between. 0 of ribbons. */
+    uint32_t motion_segments;
+    curve_point *points;    /* 4 per segment and set */
     vec3 *normals;          /* of ribbons, else NULL: 4 per segment, control points too (curves_fit_ribbon) */
     vec2 *spans;            /* per segment: the uv.x of its ends, for a curve may have been cut */
-    uint32_t *first_points; /* per segment: 4 times its number, for Embree */
+    uint32_t *first_points; /* per segment: where its points begin, for Embree */
     uint32_t *holder_count; /* as a mesh's; no more segments can then be added */
 } curves;
 

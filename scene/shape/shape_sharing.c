@@ -4,6 +4,7 @@
 
 #include "math/rng.h"
 #include "shape/borrowed_arrays.h"
+#include "shape/curves.h"
 #include "shape/mesh_motion.h"
 
 #include <stdlib.h>
@@ -73,8 +74,8 @@ static bool is_same_mesh(const mesh *a, const mesh *b)
 static bool is_same_curves(const curves *a, const curves *b)
 {
     const size_t count = a->segment_count;
-    return a->type == b->type && a->segment_count == b->segment_count &&
-           is_same_array(a->points, b->points, 4 * count * sizeof *a->points) &&
+    return a->type == b->type && a->segment_count == b->segment_count && a->motion_segments == b->motion_segments &&
+           is_same_array(a->points, b->points, curves_points_of_each(a) * count * sizeof *a->points) &&
            is_same_array(a->spans, b->spans, count * sizeof *a->spans) &&
            is_same_array(a->normals, b->normals, 4 * count * sizeof *a->normals);
 }

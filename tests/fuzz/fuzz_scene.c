@@ -3,6 +3,7 @@
 
 #include "rays/rays.h"
 #include "scene.h"
+#include "shape/curves.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -44,7 +45,7 @@ static void check_curves(const curves *c)
 {
     FUZZ_CHECK(c->segment_count > 0 && c->segment_count <= c->capacity);
     FUZZ_CHECK((c->type == CURVES_RIBBON) == (c->normals != NULL));
-    for (size_t i = 0; i < 4 * (size_t)c->segment_count; i++)
+    for (size_t i = 0; i < curves_points_of_each(c) * c->segment_count; i++)
         FUZZ_CHECK(vec3_is_finite(c->points[i].at) && c->points[i].radius >= 0.0f && isfinite(c->points[i].radius));
 }
 

@@ -115,6 +115,38 @@ static void test_translation_is_that_of_a_matrix(void **state)
     }
 }
 
+/* Likewise of curves, flat ones and tubes, also within an object that is moved the other way. */
+static void test_translation_of_curves_is_that_of_a_matrix(void **state)
+{
+    (void)state;
+    static const char *const TYPES[] = {"flat", "cylinder"};
+#define POINTS "-.6 -2 0 -.7 -.5 .1 -.5 .5 0 -.6 2 0 "
+#define CURVE  "Shape \"curve\" \"string type\" \"%s\" \"float width\" .5 "
+    for (int i = 0; i < 4; i++) {
+        const char *integrator = i % 2 == 0 ? "--integrator=path" : "--integrator=photonmap", *type = TYPES[i / 2];
+        begin_saying();
+        say("LightSource \"point\" \"point3 from\" [0 0 -3] Material \"diffuse\" \"rgb reflectance\" [.8 .5 .2] " CURVE
+            "\"integer motionsteps\" 2 \"point3 P\" [" POINTS ".6 -2 0 .5 -.5 .1 .7 .5 0 .6 2 0]",
+            type);
+        picture by_points = RENDER(write_text("points.pbrt", grown.text), integrator, "--spp=16");
+        begin_saying();
+        say("LightSource \"point\" \"point3 from\" [0 0 -3] Material \"diffuse\" \"rgb reflectance\" [.8 .5 .2] "
+            "ActiveTransform EndTime Translate 1.2 0 0 ActiveTransform All " CURVE "\"point3 P\" [" POINTS "]",
+            type);
+        picture by_matrix = RENDER(write_text("matrix.pbrt", grown.text), integrator, "--spp=16");
+        int different = 0;
+        double all = 0.0;
+        for (int k = 0; k < 3 * 32 * 32; k++) {
+            different += fabsf(by_points.pixels[k] - by_matrix.pixels[k]) > 1e-3f * by_matrix.pixels[k];
+            all += (double)by_points.pixels[k];
+        }
+        print_message("%s, %s: %d of %d values differ\n", integrator, type, different, 3 * 32 * 32);
+        assert_true(different <= 12 && all > 0.0);
+        picture_reset(&by_points);
+        picture_reset(&by_matrix);
+    }
+}
+
 /* A disc whose radius goes from 0.25 to 1.25. */
 static double uncovered_by_disc(double x, double y) { return clamp(hypot(x, y) - 0.25); }
 
@@ -195,9 +227,13 @@ static void test_stretched_sheet(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        TEST_IN_FOLDER(test_sliding_band),     TEST_IN_FOLDER(test_translation_is_that_of_a_matrix),
-        TEST_IN_FOLDER(test_growing_disc),     TEST_IN_FOLDER(test_turning_half),
-        TEST_IN_FOLDER(test_deforming_blocks), TEST_IN_FOLDER(test_stretched_sheet),
+        TEST_IN_FOLDER(test_sliding_band),
+        TEST_IN_FOLDER(test_translation_is_that_of_a_matrix),
+        TEST_IN_FOLDER(test_translation_of_curves_is_that_of_a_matrix),
+        TEST_IN_FOLDER(test_growing_disc),
+        TEST_IN_FOLDER(test_turning_half),
+        TEST_IN_FOLDER(test_deforming_blocks),
+        TEST_IN_FOLDER(test_stretched_sheet),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -213,6 +213,10 @@ static void what_is_wrong_is_told(void **state)
         {"\"string type\" \"ribbon\" \"normal N\" [0 0 1 0 0 0] " POINTS_4, "a ribbon's normal has no usable length"},
         {"\"string type\" \"ribbon\" \"normal N\" [0 0 1 0 0 -1] " POINTS_4,
          "opposite: which way does the ribbon turn?"},
+        {"\"integer motionsteps\" 2 " POINTS_4, "for each further segment, not 2"},
+        {"\"integer motionsteps\" 3 " POINTS_4, "\"P\" has 4 points, which is no multiple of the 3 of \"motionsteps\""},
+        {"\"string type\" \"ribbon\" \"integer motionsteps\" 4 \"normal N\" [0 0 1 0 0 1] " POINTS_4,
+         "a \"ribbon\" cannot have \"motionsteps\""},
     };
     static const struct {
         const char *text, *message;

@@ -385,6 +385,101 @@ static void a_moving_curve_is_where_its_time_says(void **state)
     test_run_reset(&r);
 }
 
+/* The numbers of a bent curve at a time of the shutter, of those at three. */
+static void bent_at(double time, char *out_text, size_t size)
+{
+    static const double SETS[3][12] = {{0, 0, 0, 0, 0, 1, 1, 0, 1, 1, 0, 2},
+                                       {0, 0, 0.5, 0, 1, 1, 1, 2, 1, 1, 0, 2.5},
+                                       {-2, 0, 0, 0, 0, 1, 1, 0, 2, 3, 1, 2}};
+    const int step = time < 0.5 ? 0 : 1;
+    size_t length = 0;
+    for (int i = 0; i < 12; i++) {
+        const double t = 2.0 * time - step, value = (1.0 - t) * SETS[step][i] + t * SETS[step + 1][i];
+        length += (size_t)snprintf(out_text + length, size - length, "%.9g ", value);
+    }
+}
+
+/* What rays of a time meet is what they would meet of a curve that stood still as it is then. */
+static void points_that_move_are_where_their_time_says(void **state)
+{
+    (void)state;
+    static const char *const TYPES[] = {TUBE "\"float width0\" .5 \"float width1\" .2 ",
+                                        FLAT "\"float width0\" .5 \"float width1\" .2 "};
+    static const char *const PLACES[][2] = {
+        {"", ""}, {PLACED "Scale 1 2 0.7 ", ""}, {IN_OBJECT, SEEN}, {IN_OBJECT PLACED "Scale .5 1 1 ", SEEN}};
+    enum { TIMES = 9 };
+    char sets[3][512], text[2048];
+    test_run r;
+    test_run_init(&r, 1);
+    for (int k = 0; k < 3; k++)
+        bent_at(0.5 * k, sets[k], sizeof sets[k]);
+    for (int place = 0; place < 4; place++)
+        for (int type = 0; type < 2; type++) {
+            snprintf(text, sizeof text, "%s%s\"integer motionsteps\" 3 \"point3 P\" [%s %s %s]%s", PLACES[place][0],
+                     TYPES[type], sets[0], sets[1], sets[2], PLACES[place][1]);
+            scene *moving = test_scene_create(&r, text);
+            assert_true(moving->has_motion);
+            for (int k = 0; k < TIMES; k++) {
+                const float time = (float)k / (TIMES - 1);
+                char now[512];
+                int met = 0, differ = 0;
+                bent_at((double)time, now, sizeof now);
+                snprintf(text, sizeof text, "%s%s\"point3 P\" [%s]%s", PLACES[place][0], TYPES[type], now,
+                         PLACES[place][1]);
+                scene *still = test_scene_create(&r, text);
+                for (int i = 0; i < 3000 / FEWER; i++) {
+                    rng random = test_random((uint64_t)i);
+                    scene_ray ray = random_ray(still, &random);
+                    surface_hit h, g;
+                    ray.time = time;
+                    const bool is_moving_met = scene_intersect(moving, ray, INFINITY, &h),
+                               is_still_met = scene_intersect(still, ray, INFINITY, &g);
+                    assert_true(scene_occluded(moving, ray, INFINITY) == is_moving_met);
+                    met += is_moving_met && is_still_met;
+                    differ += is_moving_met != is_still_met;
+                    if (!is_moving_met || !is_still_met)
+                        continue;
+                    const float size = still->bounding_radius;
+                    vec3 dpdu[2], dpdv[2];
+                    surface_tangents(moving, &h, &dpdu[0], &dpdv[0]);
+                    surface_tangents(still, &g, &dpdu[1], &dpdv[1]);
+                    differ += vec3_length(vec3_sub(h.position, g.position)) > 1e-4f * size ||
+                              vec3_dot(h.geometric_normal, g.geometric_normal) < 0.9999f ||
+                              fabsf(h.uv.x - g.uv.x) > 1e-3f || fabsf(h.uv.y - g.uv.y) > 2e-2f ||
+                              vec3_length(vec3_sub(dpdu[0], dpdu[1])) > 1e-2f * vec3_length(dpdu[1]) ||
+                              fabsf(h.epsilon - g.epsilon) > 1e-3f * g.epsilon;
+                }
+                /* of flat ones the moving one is cut for all times: edges are a little elsewhere */
+                if (met < 20 / FEWER || differ > 3 + met / (type == 0 ? 100 : 25))
+                    fail_msg("place %d, type %d, time %g: %d met, %d differ", place, type, (double)time, met, differ);
+                scene_destroy(still);
+            }
+            scene_destroy(moving);
+        }
+    test_run_reset(&r);
+}
+
+/* Curves of as many steps share a shape, others do not; and a flat one is cut as its most bent step needs it. */
+static void curves_of_as_many_steps_join(void **state)
+{
+    (void)state;
+    test_run r;
+    test_run_init(&r, 1);
+#define TWO_STEPS TUBE "\"integer motionsteps\" 2 \"point3 P\" [0 0 0 0 0 1 1 0 1 1 0 2  1 0 0 1 0 1 2 0 1 2 0 2] "
+    scene *s = test_scene_create(&r, TWO_STEPS TWO_STEPS TUBE BENT TWO_STEPS);
+    assert_int_equal(s->shape_count, 3);
+    const curves *c = &s->shapes[0].as.curves;
+    assert_true(c->segment_count == 2 && c->motion_segments == 1 && s->shapes[1].as.curves.motion_segments == 0);
+    assert_true(c->first_points[1] == 8 && c->points[8 + 4].at.x == 1.0f && c->points[8 + 3].at.z == 2.0f);
+    assert_true(s->bounds_max.x >= 2.5f); /* where it is at the closing */
+    scene_destroy(s);
+    s = test_scene_create(&r, FLAT "\"float width\" .002 \"integer motionsteps\" 2 \"point3 P\" "
+                                   "[0 0 0 0 0 1 0 0 2 0 0 3  0 0 0 9 0 1 -9 0 2 0 0 3] ");
+    assert_true(s->shapes[0].as.curves.segment_count > 4);
+    scene_destroy(s);
+    test_run_reset(&r);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -397,6 +492,8 @@ int main(void)
         cmocka_unit_test(tangents_go_where_uv_goes),
         cmocka_unit_test(alpha_surfaces_let_their_share_through),
         cmocka_unit_test(a_moving_curve_is_where_its_time_says),
+        cmocka_unit_test(points_that_move_are_where_their_time_says),
+        cmocka_unit_test(curves_of_as_many_steps_join),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

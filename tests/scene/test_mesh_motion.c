@@ -459,8 +459,6 @@ static void nonsense_is_refused(void **state)
          "a vertex lies beyond 1e18 units in world space"},
         {"\"bilinearmesh\" \"integer motionsteps\" 1 \"point3 P\" [0 0 0 1 0 0 0 1 0 1 1 0]",
          "Shape \"bilinearmesh\" cannot have \"motionsteps\""},
-        {"\"curve\" \"integer motionsteps\" 2 \"point3 P\" [0 0 0 1 0 0 0 1 0 1 1 0]",
-         "Shape \"curve\" cannot have \"motionsteps\""},
         {"\"loopsubdiv\" \"integer motionsteps\" 2 \"integer levels\" 13 \"integer indices\" [0 1 2] \"point3 P\" "
          "[0 0 0 1 0 0 0 1 0  0 0 1 1 0 0 0 1 0]",
          "1 triangles subdivided 13 times, in each of 2 motion steps, are more than 67108864"},

@@ -163,7 +163,7 @@ static void test_no_word_is_forgotten(void **state)
     WORDS_COUNT(texture, &s->textures[0], {0, 0});
     WORDS_COUNT(medium, &s->media[0], {0, 0});
     WORDS_COUNT(scene_instance, &s->instances[0], {0, 0});
-    /* with more motion segments there would be more vertices: see test_mesh_motion.c */
+    /* with more motion segments there would be more vertices or points: see test_mesh_motion.c */
     WORDS_COUNT(shape, find_shape(s, SHAPE_MESH), {as + offsetof(mesh, motion_segments), sizeof(shape)});
     WORDS_COUNT(shape, find_shape(s, SHAPE_DISK), {as + offsetof(quadric, center), sizeof(shape)});
     WORDS_COUNT(shape, find_shape(s, SHAPE_CURVES), {as + offsetof(curves, capacity), sizeof(shape)});

@@ -282,6 +282,41 @@ with afterglow.Context(threads=2, progress=lambda phase, fraction: phases.append
                         borrow=borrow)
             pictures.append(scene.render(**picture))
     assert numpy.array_equal(pictures[0], pictures[1]) and not numpy.array_equal(pictures[0], pictures[2])
+    # matrices of more than two times: there and back
+    pictures, there, back = [], numpy.eye(4), numpy.eye(4)
+    there[0, 3] = 1
+    for ends in (None, back, there, (there, back), numpy.array([there, back])):
+        for as_instance in (False, True):
+            with context.scene() as scene:
+                scene.camera("perspective", {"float fov": 60}, world_from_camera=away)
+                scene.light("point", {"rgb I": (9, 9, 9), "point3 from": (1, 1, -2)})
+                scene.shape("trianglemesh", {"point3 P": corners, "integer indices": triangles},
+                            object="o" if as_instance else None, world_from_shape_end=None if as_instance else ends)
+                if as_instance:
+                    scene.instance("o", None, ends)
+                pictures.append(scene.render(**picture))
+    assert numpy.array_equal(pictures[0], pictures[2]) and numpy.array_equal(pictures[6], pictures[8])
+    assert numpy.array_equal(pictures[7], pictures[9])
+    for k in (4, 5, 6, 7):
+        assert numpy.abs(pictures[k] - pictures[0]).mean() > 0.1 * pictures[0].mean()
+    assert numpy.abs(pictures[4] - pictures[6]).mean() < 0.5 * numpy.abs(pictures[4] - pictures[0]).mean()
+    with context.scene() as scene:
+        for wrong in (numpy.eye(3), numpy.zeros((0, 4, 4)), numpy.zeros((2, 16))):
+            try:
+                scene.shape("sphere", world_from_shape_end=wrong)
+                assert False, "a wrong shape of matrices is taken"
+            except ValueError as error:
+                assert "4 x 4" in str(error)
+    # strands whose points move
+    strand = numpy.array([[0, -1, 0], [0, -0.3, 0], [0, 0.3, 0], [0, 1, 0]], numpy.float32)
+    pictures = []
+    for points in (strand, numpy.array([strand, strand + numpy.float32((0.8, 0, 0))])):
+        with context.scene() as scene:
+            scene.camera("perspective", {"float fov": 60}, world_from_camera=away)
+            scene.light("point", {"rgb I": (9, 9, 9), "point3 from": (1, 1, -2)})
+            scene.shape("curve", {"point3 P": points, "float width": 0.5, "integer motionsteps": len(points) if points.ndim == 3 else 1})
+            pictures.append(scene.render(**picture))
+    assert pictures[0].mean() > 0 and numpy.abs(pictures[1] - pictures[0]).mean() > 0.2 * pictures[0].mean()
     # changes, in the end back to the picture above; arrays that are borrowed, and written to
     mesh = afterglow.vertices(4)
     mesh[:] = corners + 0.25

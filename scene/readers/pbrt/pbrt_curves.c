@@ -3,10 +3,11 @@
  * Pharr, Jakob, Humphreys, "Physically Based Rendering", 4th ed., 2023, 6.7; Farin, "Curves and Surfaces for CAGD",
  * 2002 (all become cubic Bezier curves, exactly). Flow: pbrt_shapes -> [here] -> scene.shapes. Threads: one per
  * scene. */
-#include "pbrt/pbrt_private.h"
+#include "pbrt/pbrt_meshes.h"
 
 #include "math/sampling.h"
 #include "shape/curves.h"
+#include "shape/mesh_motion.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -23,8 +24,9 @@ enum { RIBBON_CUTS_MAX = 64 };
 static const double OPPOSITE = -0.9999;
 
 typedef struct curve_source {
-    const double *points, *normals; /* 3 each; normals: NULL but for ribbons */
-    size_t point_count, segment_count;
+    const double *points, *normals;    /* 3 each; normals: NULL but for ribbons */
+    size_t point_count, segment_count; /* of one set */
+    uint32_t motion_segments;          /* sets of points behind the first */
     int degree;
     bool is_bspline;
     double width[2]; /* at its ends */
@@ -51,10 +53,12 @@ static void elevate(const double *a, const double *b, const double *c, double ou
     memcpy(out[3], c, 3 * sizeof(double));
 }
 
-static segment make_segment(const curve_source *source, size_t index)
+/* The segment as it is in one set of the points. */
+static segment make_segment(const curve_source *source, size_t index, size_t set)
 {
     segment s;
-    const double *q = source->points + 3 * index * (source->is_bspline ? 1 : (size_t)source->degree);
+    const double *q =
+        source->points + 3 * (set * source->point_count + index * (source->is_bspline ? 1 : (size_t)source->degree));
     for (int end = 0; end < 2; end++) {
         double t = (double)(index + (size_t)end) / (double)source->segment_count;
         s.radius[end] = 0.5 * (source->width[0] * (1.0 - t) + source->width[1] * t);
@@ -170,25 +174,29 @@ static void part_points(segment *s)
 
 typedef enum outcome { ADDED, IS_NOTHING, IS_OUT_OF_REACH, NO_MEMORY } outcome;
 
-/* Adds one cubic in the shape's space; what has no length, no width, or is too small for floats is nothing. */
-static outcome add_segment(curves *c, const transform *t, double scale, const segment *s, vec2 span,
+/* Adds one cubic, given in all its sets, in the shape's space; what has no width, no length in any of them, or is too
+ * small for floats is nothing. */
+static outcome add_segment(curves *c, const transform *t, double scale, const segment *sets, vec2 span,
                            double (*normals)[3])
 {
-    curve_point points[4];
-    double length = 0.0, radius = scale * fmax(s->radius[0], s->radius[1]);
-    for (int k = 0; k < 4; k++) {
-        points[k].at = transform_point(t, (vec3){(float)s->p[k][0], (float)s->p[k][1], (float)s->p[k][2]});
-        points[k].radius = (float)(scale * (s->radius[0] * (3 - k) + s->radius[1] * k) / 3.0);
-        if (!(vec3_max_abs(points[k].at) + points[k].radius <= PBRT_MAX_COORDINATE) || !vec3_is_finite(points[k].at))
-            return IS_OUT_OF_REACH;
-    }
-    for (int k = 1; k < 4; k++)
-        length += sqrt((double)vec3_distance_squared(points[k].at, points[0].at));
-    if (!(radius > 1e-15 && length > 1e-15))
-        return IS_NOTHING;
+    double length = 0.0, radius = scale * fmax(sets->radius[0], sets->radius[1]);
     if (curves_reserve(c, c->segment_count + 1) != AG_OK)
         return NO_MEMORY;
-    memcpy(c->points + 4 * (size_t)c->segment_count, points, sizeof points);
+    curve_point *points = c->points + curves_points_of_each(c) * c->segment_count;
+    for (size_t set = 0; set <= c->motion_segments; set++, points += 4) {
+        const segment *s = &sets[set];
+        for (int k = 0; k < 4; k++) {
+            points[k].at = transform_point(t, (vec3){(float)s->p[k][0], (float)s->p[k][1], (float)s->p[k][2]});
+            points[k].radius = (float)(scale * (s->radius[0] * (3 - k) + s->radius[1] * k) / 3.0);
+            if (!(vec3_max_abs(points[k].at) + points[k].radius <= PBRT_MAX_COORDINATE) ||
+                !vec3_is_finite(points[k].at))
+                return IS_OUT_OF_REACH;
+        }
+        for (int k = 1; k < 4; k++)
+            length += sqrt((double)vec3_distance_squared(points[k].at, points[0].at));
+    }
+    if (!(radius > 1e-15 && length > 1e-15))
+        return IS_NOTHING;
     c->spans[c->segment_count] = span;
     for (int k = 0; normals && k < 4; k++)
         c->normals[4 * (size_t)c->segment_count + (size_t)k] =
@@ -197,17 +205,19 @@ static outcome add_segment(curves *c, const transform *t, double scale, const se
     return ADDED;
 }
 
-/* Adds a segment as so many parts. normals: at the ends of a ribbon, else NULL. */
+/* Adds a segment, given in all its sets, as so many parts. normals: at the ends of a ribbon, else NULL. */
 static outcome add_parts(curves *c, const transform *t, double scale, const segment *whole,
                          const double *const normals[2], int cuts)
 {
+    segment parts[MESH_STEPS_MAX];
     outcome all = ADDED;
     for (int k = 0; k < cuts; k++) {
         double from = (double)k / cuts, to = (double)(k + 1) / cuts, turned[4][3];
-        segment part = cuts > 1 ? cut(whole, from, to) : *whole;
+        for (size_t set = 0; set <= c->motion_segments; set++)
+            parts[set] = cuts > 1 ? cut(&whole[set], from, to) : whole[set];
         if (normals)
             turn_normals(normals, from, to, turned);
-        outcome one = add_segment(c, t, scale, &part, (vec2){(float)from, (float)to}, normals ? turned : NULL);
+        outcome one = add_segment(c, t, scale, parts, (vec2){(float)from, (float)to}, normals ? turned : NULL);
         if (one == IS_OUT_OF_REACH || one == NO_MEMORY)
             return one;
         all = one == IS_NOTHING ? IS_NOTHING : all;
@@ -237,14 +247,20 @@ static ag_status add_segments(pbrt_parser *parser, const parameter_list *list, c
     double scale = transform_uniform_scale(t);
     size_t nothing = 0;
     for (size_t i = 0; i < source->segment_count; i++) {
-        segment whole = make_segment(source, i);
+        segment whole[MESH_STEPS_MAX];
+        int cuts = 1;
+        for (size_t set = 0; set <= source->motion_segments; set++) {
+            whole[set] = make_segment(source, i, set);
+            if (c->type == CURVES_FLAT && count_cuts(&whole[set]) > cuts)
+                cuts = count_cuts(&whole[set]);
+        }
         const double *normals[2] = {source->normals, source->normals};
         outcome all;
         if (source->normals) {
             normals[0] += 3 * i, normals[1] += 3 * (i + 1);
-            all = add_ribbon(c, t, scale, &whole, normals);
+            all = add_ribbon(c, t, scale, whole, normals);
         } else {
-            all = add_parts(c, t, scale, &whole, NULL, c->type == CURVES_FLAT ? count_cuts(&whole) : 1);
+            all = add_parts(c, t, scale, whole, NULL, cuts);
         }
         switch (all) {
         case ADDED: break;
@@ -277,7 +293,7 @@ static ag_status read_widths(pbrt_parser *parser, parameter_list *list, curve_so
     return AG_OK;
 }
 
-static ag_status read_points(pbrt_parser *parser, parameter_list *list, curve_source *source)
+static ag_status read_points(pbrt_parser *parser, parameter_list *list, curves_type type, curve_source *source)
 {
     int64_t degree = 3;
     const char *basis = "bezier";
@@ -285,6 +301,10 @@ static ag_status read_points(pbrt_parser *parser, parameter_list *list, curve_so
     AG_TRY(parameter_get_string(list, parser->log, "basis", &basis));
     AG_TRY(parameter_get_numbers(list, parser->log, "P", PARAMETER_POINT3, &source->points, &source->point_count));
     source->point_count /= 3;
+    AG_TRY(pbrt_read_motion_steps(parser, list, &source->point_count, &source->motion_segments));
+    if (type == CURVES_RIBBON && source->motion_segments > 0)
+        return pbrt_refuse(parser, list, "motionsteps",
+                           "a \"ribbon\" cannot have \"motionsteps\", as \"flat\" curves and \"cylinder\"s can");
     if (degree != 2 && degree != 3)
         return pbrt_refuse(parser, list, "degree", "\"degree\" should be 2 or 3");
     source->degree = (int)degree;
@@ -363,7 +383,8 @@ ag_status pbrt_curve(pbrt_parser *parser, parameter_list *list)
     shape s = shape_make(SHAPE_CURVES);
     curves *c = &s.as.curves;
     AG_TRY(read_type(parser, list, &c->type));
-    AG_TRY(read_points(parser, list, &source));
+    AG_TRY(read_points(parser, list, c->type, &source));
+    c->motion_segments = source.motion_segments;
     AG_TRY(read_widths(parser, list, &source));
     AG_TRY(read_normals(parser, list, c->type, &source));
     /* how finely pbrt cuts curves for its tree; Embree sees to that itself */

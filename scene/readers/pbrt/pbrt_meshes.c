@@ -247,13 +247,11 @@ static ag_status read_vertex_data(pbrt_parser *parser, parameter_list *list, con
 
 bool pbrt_has_motion_steps(const char *type)
 {
-    return strcmp(type, "trianglemesh") == 0 || strcmp(type, "loopsubdiv") == 0;
+    return strcmp(type, "trianglemesh") == 0 || strcmp(type, "loopsubdiv") == 0 || strcmp(type, "curve") == 0;
 }
 
-/* "motionsteps", which pbrt does not have: of how many sets P consists, for evenly spaced times of the shutter. Makes
- * *in_out_vertex_count, of all of them, that of one. */
-static ag_status read_motion_steps(pbrt_parser *parser, parameter_list *list, size_t *in_out_vertex_count,
-                                   uint32_t *out_segments)
+ag_status pbrt_read_motion_steps(pbrt_parser *parser, parameter_list *list, size_t *in_out_vertex_count,
+                                 uint32_t *out_segments)
 {
     int64_t steps = 1;
     AG_TRY(parameter_get_int(list, parser->log, "motionsteps", &steps));
@@ -291,7 +289,7 @@ ag_status pbrt_read_mesh_arrays(pbrt_parser *parser, parameter_list *list, size_
         return pbrt_refuse(parser, list, "P", "\"point3 P\" is missing");
     size_t vertex_count = position_count / 3, numbers_of_all = 3 * vertex_count;
     if (corners == 3)
-        AG_TRY(read_motion_steps(parser, list, &vertex_count, &out_mesh->motion_segments));
+        AG_TRY(pbrt_read_motion_steps(parser, list, &vertex_count, &out_mesh->motion_segments));
     out_mesh->vertex_count = vertex_count;
     AG_TRY(read_vertex_data(parser, list, "N", PARAMETER_NORMAL, numbers_of_all, &out_mesh->normals));
     AG_TRY(read_vertex_data(parser, list, "uv", PARAMETER_POINT2, 2 * vertex_count, &out_mesh->uvs));
@@ -405,7 +403,7 @@ static ag_status read_borrowed(pbrt_parser *parser, parameter_list *list, const 
     size_t unused_count, vertex_count = from->vertex_count;
     for (int i = 0; i < 4; i++) /* marks them as known */
         AG_TRY(parameter_get_numbers(list, parser->log, NAMES[i], TYPES[i], &unused, &unused_count));
-    AG_TRY(read_motion_steps(parser, list, &vertex_count, &m->motion_segments));
+    AG_TRY(pbrt_read_motion_steps(parser, list, &vertex_count, &m->motion_segments));
     AG_TRY(read_vertex_data(parser, list, "N", PARAMETER_NORMAL, 3 * from->vertex_count, &normals));
     AG_TRY(read_vertex_data(parser, list, "S", PARAMETER_VECTOR3, 3 * from->vertex_count, &tangents));
     parameter_list_warn_unused(list, parser->log);

@@ -30,6 +30,10 @@ ag_status pbrt_add_object_mesh(pbrt_parser *parser, const parameter_list *list, 
 ag_status pbrt_add_made_mesh(pbrt_parser *parser, const parameter_list *list);
 /* Whether shapes of that type may have "motionsteps". */
 bool pbrt_has_motion_steps(const char *type);
+/* "motionsteps", which pbrt does not have: of how many sets P consists, for evenly spaced times of the shutter. Makes
+ * *in_out_vertex_count, of all of them, that of one. Errors: AG_ERROR_SCENE. */
+ag_status pbrt_read_motion_steps(pbrt_parser *parser, parameter_list *list, size_t *in_out_vertex_count,
+                                 uint32_t *out_segments);
 /* Reads the arrays that meshes have in common, all but triangle_count. There are *out_index_count indices, a multiple
  * of corners, from malloc: those of the file, or 0, 1, 2, ... where it has none and the vertices are a single face. */
 ag_status pbrt_read_mesh_arrays(pbrt_parser *parser, parameter_list *list, size_t corners, pbrt_mesh *out_mesh,
