@@ -17,6 +17,11 @@ def matrix_of(blender_matrix):
     return np.array(blender_matrix, np.float64)
 
 
+def is_flat(matrix):
+    """Whether it has no inverse."""
+    return abs(np.linalg.det(matrix[:3, :3])) < 1e-30
+
+
 def unscaled(matrix):
     """A camera's or lamp's matrix with axes of length 1."""
     made = matrix.copy()

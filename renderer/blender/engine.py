@@ -152,7 +152,7 @@ class _Frame:
                 context.scene() as scene:
             untranslated.tell(self._scene, self._layer, self._notes)
             self._hint(scene)
-            moved = motion.look_ahead(self._engine, self._depsgraph, self._notes)
+            moved = motion.look_ahead(self._engine, self._depsgraph, self._notes, self._poll)
             mattes = passes.crypto_kinds(self._layer)
             names = translation.translate(scene, self._depsgraph, moved, self._notes, self._poll, is_by_name=bool(mattes))
             for kind, place in mattes:

@@ -1,9 +1,12 @@
-"""Motion blur: where all that is drawn stands when the shutter opens and when it closes; between, it goes straight on. Of
-what deforms (shape keys, armatures and other modifiers that move vertices) the mesh at steps between as well."""
+"""Motion blur: where all that is drawn stands at steps from the opening of the shutter to its closing; between two of them
+it goes straight on, and turns evenly. Of what deforms (shape keys, armatures and other modifiers that move vertices; hair)
+the mesh and the strands at these steps as well."""
 
 import math
 
-from . import cameras, meshes
+import numpy as np
+
+from . import cameras, hair, meshes
 
 _STEPS_MOST = 129  # of the renderer, and of Cycles
 
@@ -13,35 +16,44 @@ def _key(instance):
     return instance.object.name_full, parent, tuple(instance.persistent_id) if instance.is_instance else ()
 
 
-def _poses(depsgraph):
-    """Copies: what the graph lends goes with the next frame."""
-    poses = {_key(instance): cameras.matrix_of(instance.matrix_world) for instance in depsgraph.object_instances}
-    camera = depsgraph.scene_eval.camera
-    if camera:
-        poses["camera", camera.name] = cameras.matrix_of(camera.evaluated_get(depsgraph).matrix_world)
-    return poses
+def _owners(instance):
+    """The object, and what it is an instance for."""
+    return [instance.object] + ([instance.parent] if instance.is_instance and instance.parent else [])
 
 
-def _steps_of(shown):
-    """The times at which Cycles looks at a mesh that deforms."""
-    cycles = getattr(shown, "cycles", None)
-    return min(2 ** (cycles.motion_steps if cycles else 1) + 1, _STEPS_MOST)
+def _steps_of(instance):
+    """The times at which Cycles looks at what moves."""
+    most = max(getattr(getattr(owner, "cycles", None), "motion_steps", 1) for owner in _owners(instance))
+    return min(2 ** most + 1, _STEPS_MOST)
 
 
 def _has(instance, name):
-    """Whether Cycles' switches of that name are on, of the object and of what it is an instance for."""
-    owners = [instance.object] + ([instance.parent] if instance.is_instance and instance.parent else [])
-    return all(getattr(getattr(owner, "cycles", None), name, True) for owner in owners)
+    """Whether Cycles' switches of that name are on, of all owners."""
+    return all(getattr(getattr(owner, "cycles", None), name, True) for owner in _owners(instance))
+
+
+def _may_move(instance):
+    return _has(instance, "use_motion_blur") and (instance.object.type in meshes.SURFACES or instance.object.type == "CURVES")
 
 
 def _may_deform(instance, scene):
-    return (_has(instance, "use_motion_blur") and _has(instance, "use_deform_motion")
-            and instance.object.type in meshes.SURFACES and instance.object.is_deform_modified(scene, "RENDER"))
+    return (_may_move(instance) and _has(instance, "use_deform_motion")
+            and instance.object.type != "CURVES" and instance.object.is_deform_modified(scene, "RENDER"))
 
 
-def _stride(shown, last):
+def _stride(instance, last):
     """Of the steps 0 to `last` of all objects an object takes each so many-th: steps are powers of two, and one."""
-    return max(last // (_steps_of(shown) - 1), 1)
+    return max(last // (_steps_of(instance) - 1), 1)
+
+
+def _poses(depsgraph, k, last):
+    """Matrices at step k of what has one at it; copies: what the graph lends goes with the next frame."""
+    poses = {_key(instance): cameras.matrix_of(instance.matrix_world) for instance in depsgraph.object_instances
+             if _may_move(instance) and k % _stride(instance, last) == 0}
+    camera = depsgraph.scene_eval.camera
+    if camera and k in (0, last):
+        poses["camera", camera.name] = cameras.matrix_of(camera.evaluated_get(depsgraph).matrix_world)
+    return poses
 
 
 def _shapes(depsgraph, k, last, before):
@@ -49,7 +61,7 @@ def _shapes(depsgraph, k, last, before):
     first step."""
     shapes, by_data = {}, {}
     for instance in depsgraph.object_instances:
-        if not instance.show_self or not _may_deform(instance, depsgraph.scene) or k % _stride(instance.object, last):
+        if not instance.show_self or not _may_deform(instance, depsgraph.scene) or k % _stride(instance, last):
             continue
         key, data = _key(instance), instance.object.data.as_pointer()
         if data not in by_data:
@@ -63,22 +75,60 @@ def _shapes(depsgraph, k, last, before):
     return shapes
 
 
+def _strands(depsgraph, k, last, poll):
+    """Where hair is at step k, of what has a pose at it."""
+    strands = {}
+    for instance in depsgraph.object_instances:
+        if not _may_move(instance) or not _has(instance, "use_deform_motion") or k % _stride(instance, last):
+            continue
+        if instance.object.type == "CURVES":
+            strands[_key(instance)] = hair.curves_pose(instance.object)
+        elif instance.show_particles and instance.object.type == "MESH":
+            pose = hair.particle_pose(instance.object, poll)
+            if pose:
+                strands[_key(instance)] = pose
+    return strands
+
+
+def _is_even(path):
+    """Whether a path goes straight and evenly, without a turn: its ends say all of it."""
+    way, size = path[-1] - path[0], np.abs(path[:, :3, 3]).max()
+    between = path[0] + way * np.linspace(0, 1, len(path))[:, None, None]
+    return (not way[:3, :3].any() and (path[:, :3, :3] == path[0, :3, :3]).all()
+            and np.abs(path - between).max() <= 1e-4 * np.abs(way).max() + 1e-6 * size)
+
+
+def _is_one_shape(poses):
+    """Whether hair is the same in all, but for the rounding."""
+    return all(np.abs(now - first).max(initial=0) <= 1e-5 * np.ptp(first, axis=tuple(range(first.ndim - 1))).max(initial=0)
+               for pose in poses[1:] for now, first in zip(pose, poses[0]))
+
+
 class Motion:
-    """opened, closed: poses by key, or None where nothing moves. shapes: for each step the poses of the meshes
-    that have one at it, by key."""
+    """poses, shapes, strands: for each step the matrices, the meshes and the hair of what has them at it, by key."""
 
-    def __init__(self, opened=None, closed=None, shapes=()):
-        self._opened, self._closed, self._shapes = opened, closed, shapes
+    def __init__(self, notes=None, poses=(), shapes=(), strands=()):
+        self._notes, self._poses, self._shapes, self._strands = notes, poses, shapes, strands
 
-    def _pair(self, key, matrix):
-        if self._opened is None or key not in self._opened or key not in self._closed:
-            return matrix, None
-        start, end = self._opened[key], self._closed[key]
-        return (start, end) if (start != end).any() else (start, None)
+    def _at_steps(self, instance, steps):
+        key, stride = _key(instance), _stride(instance, len(steps) - 1)
+        return [at_step.get(key) for at_step in steps[::stride]]
 
     def of_instance(self, instance, matrix):
-        """Its matrix when the shutter opens, and when it closes; the latter None where it stands still."""
-        return self._pair(_key(instance), matrix) if _has(instance, "use_motion_blur") else (matrix, None)
+        """Its matrix when the shutter opens, and those behind it to the closing: one, (4, 4), or several, (count, 4, 4); None
+        where it stands still."""
+        path = self._at_steps(instance, self._poses) if self._poses else [None]
+        if any(pose is None for pose in path):
+            return matrix, None
+        path = np.array(path)
+        if (path == path[0]).all():
+            return path[0], None
+        volumes = np.linalg.det(path[:, :3, :3])
+        if np.abs(volumes).min() < 1e-30 or (np.sign(volumes) != np.sign(volumes[0])).any():
+            self._notes.say(f'object "{instance.object.name}": it is flat, or turns inside out, while the shutter is open, and '
+                            'stands still')
+            return matrix, None
+        return path[0], path[-1] if _is_even(path) else path[1:]
 
     def of_shape(self, instance):
         """Its poses from the opening of the shutter to its closing, of which some may be None; None where it keeps its
@@ -86,15 +136,34 @@ class Motion:
         key = _key(instance)
         if not self._shapes or not any(key in shapes for shapes in self._shapes):
             return None
-        poses = [shapes.get(key) for shapes in self._shapes[::_stride(instance.object, len(self._shapes) - 1)]]
+        poses = self._at_steps(instance, self._shapes)
         return None if all(pose is poses[0] for pose in poses) else poses
 
+    def of_strands(self, instance, now):
+        """The poses of its hair from the opening of the shutter to its closing; None where it keeps its shape. now: its
+        pose at the frame."""
+        if not self._strands:
+            return None
+        poses = self._at_steps(instance, self._strands)
+        if all(pose is None for pose in poses):
+            return None
+        if any(pose is None or [one.shape for one in pose] != [one.shape for one in now] for pose in poses):
+            self._notes.say(f'object "{instance.object.name}": its hair has other strands while the shutter is open, and '
+                            'does not deform')
+            return None
+        return None if _is_one_shape(poses) else poses
+
     def of_camera(self, name, matrix):
-        return self._pair(("camera", name), matrix)
+        key = "camera", name
+        if not self._poses or key not in self._poses[0] or key not in self._poses[-1]:
+            return matrix, None
+        start, end = self._poses[0][key], self._poses[-1][key]
+        return (start, end) if (start != end).any() else (start, None)
 
 
-def look_ahead(engine, depsgraph, notes):
-    """The motion of the current frame; the graph is evaluated anew for it, and stands at the frame afterwards."""
+def look_ahead(engine, depsgraph, notes, poll=lambda: None):
+    """The motion of the current frame; the graph is evaluated anew for it, and stands at the frame afterwards, also where
+    `poll`, which is called now and then, raises something."""
     scene = depsgraph.scene
     render = scene.render
     if not render.use_motion_blur:
@@ -105,16 +174,21 @@ def look_ahead(engine, depsgraph, notes):
         notes.say("the shutter is open for all lines at once here, not rolling")
     frame, shutter = scene.frame_current + scene.frame_subframe, render.motion_blur_shutter
     first = frame - {"START": 0.0, "CENTER": 0.5, "END": 1.0}[position] * shutter
-    steps = max((_steps_of(instance.object) for instance in depsgraph.object_instances
-                 if _may_deform(instance, scene)), default=0)
-    last = max(steps, 2) - 1
-    poses, shapes = [], []
-    for k in range(last + 1):
-        when = first + shutter * k / last
-        engine.frame_set(math.floor(when), when - math.floor(when))
-        if k in (0, last):
-            poses.append(_poses(depsgraph))
-        if steps:
-            shapes.append(_shapes(depsgraph, k, last, shapes[0] if shapes else {}))
-    engine.frame_set(math.floor(frame), frame - math.floor(frame))
-    return Motion(*poses, shapes)
+    last, deforms = 1, False
+    for instance in depsgraph.object_instances:
+        if _may_move(instance):
+            last = max(last, _steps_of(instance) - 1)
+            deforms = deforms or _may_deform(instance, scene)
+    poses, shapes, strands = [], [], []
+    try:
+        for k in range(last + 1):
+            poll()
+            when = first + shutter * k / last
+            engine.frame_set(math.floor(when), when - math.floor(when))
+            poses.append(_poses(depsgraph, k, last))
+            strands.append(_strands(depsgraph, k, last, poll))
+            if deforms:
+                shapes.append(_shapes(depsgraph, k, last, shapes[0] if shapes else {}))
+    finally:
+        engine.frame_set(math.floor(frame), frame - math.floor(frame))
+    return Motion(notes, poses, shapes, strands)

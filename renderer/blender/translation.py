@@ -1,5 +1,7 @@
 """From the dependency graph to a scene of the renderer: what is drawn, once each, and where."""
 
+import itertools
+
 import numpy as np
 
 from . import cameras, hair, lamps, meshes, worlds
@@ -109,14 +111,9 @@ def _add_part(scene, model, part, **where):
                 material=look.name, light=light, medium_inside=look.medium, **where)
 
 
-def _is_flat(matrix):
-    """Whether it has no inverse."""
-    return abs(np.linalg.det(matrix[:3, :3])) < 1e-30
-
-
 def _place_part(scene, model, part, place, end=None):
     """Where a scale of 0 makes it flat it does not go along its matrices, and its vertices are in world space."""
-    if _is_flat(place):
+    if cameras.is_flat(place):
         positions = part.positions @ place[:3, :3].T + place[:3, 3]
         _add_part(scene, model, part._replace(positions=positions, normals=None))
     else:
@@ -131,8 +128,8 @@ def _add_model(scene, model):
     for _, _, frame in model.places:
         for part in shining:
             _place_part(scene, model, part, frame)
-    solid = [(place, end) for place, end, _ in model.places if not _is_flat(place)]
-    alone = [(place, None) for place, _, _ in model.places if _is_flat(place)] + (solid if len(solid) == 1 else [])
+    solid = [(place, end) for place, end, _ in model.places if not cameras.is_flat(place)]
+    alone = [(place, None) for place, _, _ in model.places if cameras.is_flat(place)] + (solid if len(solid) == 1 else [])
     for place, end in alone:
         for part in dark:
             _place_part(scene, model, part, place, end)
@@ -157,19 +154,26 @@ def translate(scene, depsgraph, motion, notes, poll, view=None, is_by_name=False
         cameras.add_camera(scene, blender_scene.camera.evaluated_get(depsgraph), blender_scene.render, motion, notes)
     materials, models = Materials(scene, notes, layer.material_override), {}
     sharpness = _Sharpness(blender_scene, depsgraph, view)
-    taken, hairy = set(), set()  # names of models; of what has hair
+    taken, tufts = set(), {}  # names of models; hair by whose it is, None where there is none
     for instance in depsgraph.object_instances:
         poll()
         shown = instance.object
-        if layer.use_strand and instance.show_particles and not instance.is_instance and shown.type == "MESH":
-            hair.add_particle_hair(scene, shown, materials, poll)
-            hairy.add(shown.name)
-            if motion.of_shape(instance) or motion.of_instance(instance, cameras.matrix_of(instance.matrix_world))[1] is not None:
-                notes.say(f'object "{shown.name}": its hair stands still while the shutter is open')
+        matrix = cameras.matrix_of(instance.matrix_world)
+
+        def places():
+            return (*motion.of_instance(instance, matrix), matrix)
+
+        def poses_of_hair(now):
+            return motion.of_strands(instance, now)
+
+        if layer.use_strand and instance.show_particles and shown.type == "MESH":
+            if shown.name_full not in tufts:
+                tufts[shown.name_full] = hair.particle_tuft(shown, materials, poll, poses_of_hair)
+            if tufts[shown.name_full]:
+                tufts[shown.name_full].places.append(places()[:2])
         if not instance.show_self:
             continue
         _tell_visibility(shown, notes)
-        matrix = cameras.matrix_of(instance.matrix_world)
         if shown.type == "LIGHT":
             lamps.add_lamp(scene, shown, matrix, notes)
         elif shown.type in meshes.SURFACES and layer.use_solid:
@@ -182,16 +186,22 @@ def translate(scene, depsgraph, motion, notes, poll, view=None, is_by_name=False
                 models[key] = _model(shown, materials, name, notes, lambda part: sharpness.pixels(
                     part, matrix, instance.is_instance), motion.of_shape(instance))
             if models[key]:
-                models[key].places.append((*motion.of_instance(instance, matrix), matrix))
+                models[key].places.append(places())
         elif shown.type == "CURVES" and layer.use_strand:
-            hair.add_curves(scene, shown, matrix, materials, poll)
-            hairy.add(shown.name)
+            if shown.name_full not in tufts:
+                tufts[shown.name_full] = hair.curves_tuft(shown, materials, poses_of_hair)
+            tufts[shown.name_full].places.append(places()[:2])
         elif shown.type in ("VOLUME", "POINTCLOUD", "GPENCIL"):
             notes.say(f'object "{shown.name}": a {shown.type.lower()} is not translated')
     for model in models.values():
         poll()
         if model:
             _add_model(scene, model)
+    hairs = [tuft for tuft in tufts.values() if tuft]
+    for tuft in hairs:
+        name = next(name for name in (f"{tuft.name}|hair{k}" for k in itertools.count()) if name not in taken)
+        taken.add(name)
+        hair.add_tuft(scene, tuft, name, poll)
     if layer.use_sky:
         worlds.add_world(scene, blender_scene.world, notes)
-    return hairy.union(model.name for model in models.values() if model), set(materials.names())
+    return {tuft.name for tuft in hairs}.union(model.name for model in models.values() if model), set(materials.names())
