@@ -69,6 +69,16 @@ static inline sampler sampler_branch(const sampler *whole, uint32_t branch_bits,
     return s;
 }
 
+/* Returns a sampler whose sequences are apart from those of the whole sample, for a part of its path that meets as many
+ * vertices as another. number: tells the parts of one whole from each other. */
+static inline sampler sampler_apart(const sampler *whole, uint32_t number)
+{
+    sampler s = *whole;
+    s.key = hash_combine(whole->key, 0x6170617274u + number);
+    s.block_key = hash_combine(whole->block_key, 0x6170617274u + number);
+    return s;
+}
+
 /* Returns the sampler of a sample that draws `count` numbers for each use, where its pixel draws up to 2^number_bits in
  * all. shift: to be added to the sample's number, so that its draws follow those of samples with other counts. */
 static inline sampler sampler_shifted(const sampler *whole, uint32_t shift, uint32_t number_bits, uint32_t count)

@@ -48,6 +48,20 @@ bool bsdf_has_many_ways(const bsdf *b, bsdf_lobes lobes)
     return false;
 }
 
+float bsdf_smooth_reflection_share(const bsdf *b, bsdf_lobes lobes)
+{
+    const bsdf_lobe *only = NULL;
+    for (int i = 0; i < b->lobe_count; i++) {
+        const bsdf_lobe *lobe = &b->lobes[i];
+        if (!(lobe->group & lobes) || !(lobe->probability > 0.0f))
+            continue;
+        if (only || !lobe->is_delta || !lobe_passes(b, lobe))
+            return 0.0f;
+        only = lobe;
+    }
+    return only ? bsdf_lobe_type_of(only)->reflection_share(b, frame_to_local(&b->shading, b->out)) : 0.0f;
+}
+
 /* Whether facets may send light through the surface: between the horizons of two normals that are apart. */
 static bool facets_cross(const bsdf *b)
 {

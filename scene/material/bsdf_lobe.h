@@ -31,6 +31,9 @@ typedef struct bsdf_lobe_type {
      * smooth. */
     bool (*sample_smooth)(const bsdf *b, bsdf_transport transport, vec3 o, float u_lobe, vec3 *out_local,
                           rgb *out_weight);
+    /* Returns the share of u_lobe, from 0 up, in which sample_smooth reflects; elsewhere it transmits. NULL: no lobe of
+     * this type passes. */
+    float (*reflection_share)(const bsdf *b, vec3 o);
     /* Samples a lobe that is not smooth; for flux of a diffuse lobe, in the geometric frame. NULL: always smooth. */
     bool (*sample_rough)(const bsdf *b, bsdf_transport transport, vec3 o, float u_lobe, vec2 u, vec3 *out_local);
     /* Returns whether it transmits light, with this material. NULL: never. */

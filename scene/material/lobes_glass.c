@@ -31,6 +31,12 @@ static void evaluate_dielectric(const bsdf *b, bsdf_transport transport, vec3 di
     *out_pdf *= share;
 }
 
+static float dielectric_reflection_share(const bsdf *b, vec3 o)
+{
+    float ior = b->material.glass.ior;
+    return fresnel_dielectric(fabsf(o.z), o.z >= 0.0f ? ior : 1.0f / ior);
+}
+
 static bool mirror_dielectric(const bsdf *b, bsdf_transport transport, vec3 o, float u_lobe, vec3 *out_local,
                               rgb *out_weight)
 {
@@ -38,7 +44,7 @@ static bool mirror_dielectric(const bsdf *b, bsdf_transport transport, vec3 o, f
     float ior = b->material.glass.ior, eta = o.z >= 0.0f ? ior : 1.0f / ior;
     *out_local = bsdf_lobe_mirror(o, &n);
     *out_weight = rgb_gray(1.0f);
-    if (u_lobe < fresnel_dielectric(fabsf(o.z), eta))
+    if (u_lobe < dielectric_reflection_share(b, o))
         return true;
     if (!refract_through(o, n, eta, out_local))
         return false;
@@ -71,18 +77,23 @@ const bsdf_lobe_type bsdf_lobe_dielectric = {
     .side = LOBE_BY_FACETS,
     .evaluate = evaluate_dielectric,
     .sample_smooth = mirror_dielectric,
+    .reflection_share = dielectric_reflection_share,
     .sample_rough = sample_dielectric,
     .passes = passes_always,
     .index = glass_index,
 };
 
+static float thin_dielectric_reflection_share(const bsdf *b, vec3 o)
+{
+    return fresnel_thin_dielectric(fabsf(o.z), b->material.glass.ior);
+}
+
 static bool mirror_thin_dielectric(const bsdf *b, bsdf_transport transport, vec3 o, float u_lobe, vec3 *out_local,
                                    rgb *out_weight)
 {
     vec3 n;
-    float reflected = fresnel_thin_dielectric(fabsf(o.z), b->material.glass.ior);
     (void)transport;
-    *out_local = u_lobe >= reflected ? vec3_negate(o) : bsdf_lobe_mirror(o, &n);
+    *out_local = u_lobe < thin_dielectric_reflection_share(b, o) ? bsdf_lobe_mirror(o, &n) : vec3_negate(o);
     *out_weight = rgb_gray(1.0f);
     return true;
 }
@@ -90,19 +101,27 @@ static bool mirror_thin_dielectric(const bsdf *b, bsdf_transport transport, vec3
 const bsdf_lobe_type bsdf_lobe_thin_dielectric = {
     .side = LOBE_BY_FACETS,
     .sample_smooth = mirror_thin_dielectric,
+    .reflection_share = thin_dielectric_reflection_share,
     .passes = passes_always,
 };
+
+static float slab_reflection_share(const bsdf *b, vec3 o)
+{
+    const slab_point *m = &b->material.slab;
+    float reflected = rgb_max(m->reflected), all = reflected + rgb_max(m->through);
+    (void)o;
+    return all > 0.0f ? reflected / all : 0.0f;
+}
 
 /* false: all is absorbed. */
 static bool mirror_slab(const bsdf *b, bsdf_transport transport, vec3 o, float u_lobe, vec3 *out_local, rgb *out_weight)
 {
     vec3 n;
     const slab_point *m = &b->material.slab;
-    float reflected = rgb_max(m->reflected), all = reflected + rgb_max(m->through);
     (void)transport;
-    if (!(all > 0.0f))
+    if (rgb_is_black(m->reflected) && rgb_is_black(m->through))
         return false;
-    float share = reflected / all;
+    float share = slab_reflection_share(b, o);
     bool goes_through = u_lobe >= share;
     *out_local = goes_through ? vec3_negate(o) : bsdf_lobe_mirror(o, &n);
     *out_weight = goes_through ? rgb_scale(m->through, 1.0f / (1.0f - share)) : rgb_scale(m->reflected, 1.0f / share);
@@ -112,5 +131,6 @@ static bool mirror_slab(const bsdf *b, bsdf_transport transport, vec3 o, float u
 const bsdf_lobe_type bsdf_lobe_slab = {
     .side = LOBE_BY_FACETS,
     .sample_smooth = mirror_slab,
+    .reflection_share = slab_reflection_share,
     .passes = passes_always,
 };

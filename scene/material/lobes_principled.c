@@ -84,6 +84,11 @@ static bool pass_through(const principled_point *m, vec3 o, vec3 n, vec3 *out_lo
     return refract_through(o, n, o.z >= 0.0f ? m->ior : 1.0f / m->ior, out_local);
 }
 
+static float principled_reflection_share(const bsdf *b, vec3 o)
+{
+    return facet_at(&b->material.principled, o, fabsf(o.z)).reflection_probability;
+}
+
 static bool mirror_principled(const bsdf *b, bsdf_transport transport, vec3 o, float u_lobe, vec3 *out_local,
                               rgb *out_weight)
 {
@@ -132,6 +137,7 @@ const bsdf_lobe_type bsdf_lobe_principled = {
     .side = LOBE_BY_FACETS,
     .evaluate = evaluate_principled,
     .sample_smooth = mirror_principled,
+    .reflection_share = principled_reflection_share,
     .sample_rough = sample_principled,
     .passes = passes,
     .index = index_of,

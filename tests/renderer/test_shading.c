@@ -96,6 +96,61 @@ static void chain_of_mirrors(void **state)
     eye_reset(&e);
 }
 
+/* Two lamps that reflect nothing, and glass for what is between. */
+#define ABOVE_AND_BELOW                                                                                                \
+    MIRROR("0 0 0")                                                                                                    \
+    "AttributeBegin Translate 0 0 3 Rotate 180 1 0 0 AreaLightSource \"diffuse\" \"rgb L\" [6 6 6] "                   \
+    "Shape \"disk\" \"float radius\" 100 AttributeEnd "                                                                \
+    "AttributeBegin Translate 0 0 -3 AreaLightSource \"diffuse\" \"rgb L\" [2 2 2] "                                   \
+    "Shape \"disk\" \"float radius\" 100 AttributeEnd Material \"dielectric\" \"float eta\" 1.5 "
+
+/* Returns Fresnel's reflectance of glass of index 1.5 for unpolarised light that arrives at that cosine. */
+static double reflectance_of_glass(double cosine)
+{
+    double inside = sqrt(1.0 - (1.0 - cosine * cosine) / 2.25);
+    double parallel = (1.5 * cosine - inside) / (1.5 * cosine + inside),
+           perpendicular = (cosine - 1.5 * inside) / (cosine + 1.5 * inside);
+    return 0.5 * (parallel * parallel + perpendicular * perpendicular);
+}
+
+/* At a smooth surface of glass a path goes both ways, so that each sample has the light of both lamps: what is
+ * reflected of the one, and the radiance of the other, which lies in the glass, over the square of the index. */
+static void both_ways_of_glass(void **state)
+{
+    (void)state;
+    eye e;
+    eye_init_with_photons(&e, ABOVE_AND_BELOW "Shape \"disk\" \"float radius\" 50", 1000, NEAREST);
+    vec3 from = {0.0f, 0.0f, 1.0f}, slope = {1.0f, 0.0f, -1.0f};
+    double reflected = reflectance_of_glass(sqrt(0.5));
+    for (uint32_t i = 0; i < 100; i++)
+        assert_relative((double)radiance_along(&e, i, from, slope, INFINITY),
+                        reflected * 6.0 + (1.0 - reflected) * 2.0 / 2.25, 1e-4);
+    eye_reset(&e);
+}
+
+/* A sheet of glass, whose inner reflections form a series: 2 F / (1 + F) is reflected in all. What chance still picks
+ * is too faint to take a sample far from that. */
+static void both_ways_of_a_sheet(void **state)
+{
+    (void)state;
+    eye e;
+    eye_init_with_photons(&e,
+                          ABOVE_AND_BELOW "Shape \"disk\" \"float radius\" 50 AttributeBegin Rotate 180 1 0 0 "
+                                          "Shape \"disk\" \"float radius\" 50 \"float height\" 0.1 AttributeEnd",
+                          1000, NEAREST);
+    vec3 from = {0.0f, 0.0f, 1.0f}, slope = {1.0f, 0.0f, -1.0f};
+    double once = reflectance_of_glass(sqrt(0.5)), reflected = 2.0 * once / (1.0 + once);
+    double expected = reflected * 6.0 + (1.0 - reflected) * 2.0;
+    mean_sum sum = {0};
+    for (uint32_t i = 0; i < SAMPLES; i++) {
+        double radiance = (double)radiance_along(&e, i, from, slope, INFINITY);
+        assert_relative(radiance, expected, 0.1);
+        mean_add(&sum, radiance);
+    }
+    assert_mean(&sum, expected, 1e-4);
+    eye_reset(&e);
+}
+
 /* Behind a mirror that hardly reflects, a diffuse surface shows the estimate at it: no gather ray is sent. Photons lie
  * evenly over the unit sphere, and the bound is as in test_final_gather.c. */
 static void low_contributions_are_looked_up(void **state)
@@ -121,8 +176,9 @@ static void low_contributions_are_looked_up(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(lamp_in_a_mirror), cmocka_unit_test(floor_under_a_ball),
-                                       cmocka_unit_test(chain_of_mirrors),
-                                       cmocka_unit_test(low_contributions_are_looked_up)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(lamp_in_a_mirror),     cmocka_unit_test(floor_under_a_ball),
+        cmocka_unit_test(chain_of_mirrors),     cmocka_unit_test(both_ways_of_glass),
+        cmocka_unit_test(both_ways_of_a_sheet), cmocka_unit_test(low_contributions_are_looked_up)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
