@@ -28,23 +28,47 @@ typedef struct posed {
 
 static float mixed(float a, float b, float t) { return (1.0f - t) * a + t * b; }
 
-static posed pose_of(const curves *c, uint32_t segment, float time)
+/* The control points before a time of the shutter, behind which the set after it follows; and how far the way from the
+ * one to the other is behind. Only of points that move. */
+static const curve_point *points_before(const curves *c, uint32_t segment, float time, float *out_share)
 {
-    const curve_point *q = c->points + curves_points_of_each(c) * segment;
-    posed at = {.index = segment};
-    if (c->motion_segments == 0) {
-        memcpy(at.points, q, sizeof at.points);
-        return at;
-    }
     const float passed = fminf(fmaxf(time, 0.0f), 1.0f) * (float)c->motion_segments;
     const uint32_t last = c->motion_segments - 1, whole = (uint32_t)passed, step = whole < last ? whole : last;
-    const float t = passed - (float)step;
+    *out_share = passed - (float)step;
+    return c->points + curves_points_of_each(c) * segment + 4 * (size_t)step;
+}
+
+static posed pose_of(const curves *c, uint32_t segment, float time)
+{
+    posed at = {.index = segment};
+    if (c->motion_segments == 0) {
+        memcpy(at.points, c->points + curves_points_of_each(c) * segment, sizeof at.points);
+        return at;
+    }
+    float t;
+    const curve_point *before = points_before(c, segment, time, &t);
     for (size_t k = 0; k < 4; k++) {
-        const curve_point a = q[4 * (size_t)step + k], b = q[4 * ((size_t)step + 1) + k];
+        const curve_point a = before[k], b = before[4 + k];
         at.points[k] = (curve_point){{mixed(a.at.x, b.at.x, t), mixed(a.at.y, b.at.y, t), mixed(a.at.z, b.at.z, t)},
                                      mixed(a.radius, b.radius, t)};
     }
     return at;
+}
+
+/* The largest coordinate, by its size, that a segment reaches at a time; where it moves, of the sets before and after:
+ * their means are rounded by as much. */
+static float reach_of(const curves *c, const posed *segment, float time)
+{
+    const curve_point *points = segment->points;
+    size_t count = 4;
+    float reach = 0.0f, share;
+    if (c->motion_segments > 0) {
+        points = points_before(c, segment->index, time, &share);
+        count = 8;
+    }
+    for (size_t k = 0; k < count; k++)
+        reach = fmaxf(reach, vec3_max_abs(points[k].at) + points[k].radius);
+    return reach;
 }
 
 typedef struct axis_point {
@@ -371,10 +395,7 @@ void curves_surface_at(const shape *s, uint32_t primitive_index, float u, vec3 p
         h->geometric_normal = vec3_negate(h->geometric_normal);
     h->shading_normal = h->geometric_normal;
     h->uv = (vec2){span.x + (float)along * (span.y - span.x), (float)fmin(fmax(0.5 + 0.5 * v, 0.0), 1.0)};
-    float largest = 0.0f;
-    for (int k = 0; k < 4; k++)
-        largest = fmaxf(largest, vec3_max_abs(segment.points[k].at) + segment.points[k].radius);
-    h->epsilon = (float)epsilon + largest * SHAPE_EPSILON_RELATIVE;
+    h->epsilon = (float)epsilon + reach_of(c, &segment, time) * SHAPE_EPSILON_RELATIVE;
     h->is_flat = false;
     h->is_strand = true;
     h->faces_rays = c->type == CURVES_FLAT;
