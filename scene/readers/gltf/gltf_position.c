@@ -3,6 +3,7 @@
  * functions. */
 #include "gltf/gltf_private.h"
 
+#include <limits.h>
 #include <string.h>
 
 /* The text is known to be JSON, and ends with a NUL. */
@@ -102,10 +103,10 @@ file_location gltf_position(const gltf_reader *r, const gltf_value *v)
     const char *end = find_value(begin, v);
     for (const char *c = begin; c < end; c++) {
         if (*c == '\n') {
-            where.line++;
+            where.line += where.line < INT_MAX;
             where.column = 1;
-        } else {
-            where.column += ((unsigned char)*c & 0xc0) != 0x80; /* one for each character of UTF-8 */
+        } else { /* one for each character of UTF-8; texts may be longer than an int tells */
+            where.column += ((unsigned char)*c & 0xc0) != 0x80 && where.column < INT_MAX;
         }
     }
     return where;
