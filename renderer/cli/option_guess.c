@@ -98,7 +98,7 @@ const char *option_guess(const char *name)
     const char *best = NULL;
     listed_option option;
     const size_t length = strlen(name);
-    int nearest = length < 4 ? 2 : length < 8 ? 3 : 4; /* so many slips are too many */
+    int nearest = length < 6 ? 2 : length < 8 ? 3 : 4; /* so many slips are too many: short words are near others */
     for (size_t i = 0; i < sizeof OTHERS / sizeof *OTHERS; i++)
         if (strcmp(name, OTHERS[i][0]) == 0)
             return OTHERS[i][1];

@@ -157,6 +157,8 @@ static void what_was_meant_is_named(void **state)
         {"--max-bounces=2", "did you mean --max-depth?"},
         {"--denoize", "did you mean --denoise?"},
         {"--integrater=path", "did you mean --integrator?"},
+        {"--job=2", "did you mean --nthreads?"},
+        {"--logs=a.txt", "there is no option --logs\n"}, /* two slips of four letters are another word */
         {"--zyxwvutsr", "there is no option --zyxwvutsr\n"},
         {"--camera-", "--camera- is the beginning of several options: --camera-from, --camera-to, --camera-up"},
         {"-Z", "there is no option -Z"},
