@@ -14,7 +14,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-enum { OPEN_MAX_COUNT = 128 };
+enum { OPEN_MAX_COUNT = 64 }; /* files, each with two descriptors: the one it was opened by, and the module's own */
 
 /* A file that parts are read from: the module's, and the descriptor that it was opened by. */
 typedef struct open_levels {

@@ -15,8 +15,8 @@
 typedef struct image_levels image_levels;
 
 /* The file is opened as of input_file_open; run may be NULL. *out_levels NULL, with AG_OK: the file holds no levels,
- * cannot be read, or is of no kind that parts are read of,
- * which reading it whole will tell. Errors: AG_ERROR_MEMORY. */
+ * cannot be read, or is of no kind that parts are read of, which reading it whole will tell. Errors: AG_ERROR_MEMORY.
+ */
 ag_status image_levels_open(const run_context *run, const char *path, image_levels **out_levels);
 void image_levels_close(image_levels *l); /* NULL is fine */
 

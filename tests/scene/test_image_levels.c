@@ -1,16 +1,21 @@
 /* test_image_levels.c: tiles are read into memory that was measured when the file was opened: a file that says other
- * sizes by the time it is read is an error. And a picture that is made of a file's own levels is fingerprinted by its
- * bytes and by what they are decoded with. Flow: tests of scene/image/image_levels.c, scene/texture/texture_image.c.
- * Threads: one. */
+ * sizes by the time it is read is an error. Few files stay open. And a picture that is made of a file's own levels is
+ * fingerprinted by its bytes and by what they are decoded with. Flow: tests of scene/image/image_levels.c,
+ * scene/texture/texture_image.c. Threads: one. */
 #define _GNU_SOURCE
 #include "fixtures/texture_fixture.h"
 #include "fixtures/tiled_tiff.h"
 #include "image/image_levels.h"
 #include "image/image_module_loader.h"
 
+#include <dirent.h>
 #include <fcntl.h>
 
-enum { MANY = 129, TILE_BYTES = TIFF_TILE * TIFF_TILE * 3 }; /* so many files are not held open at once */
+enum {
+    MANY = 129,
+    DESCRIPTORS_MOST = 128,
+    TILE_BYTES = TIFF_TILE * TIFF_TILE * 3
+}; /* so many files are not held open at once */
 
 static unsigned char number(uint32_t level, uint32_t x, uint32_t y, uint32_t channel)
 {
@@ -39,6 +44,38 @@ static void tiles_are_of_the_header(void **state)
     }
     assert_int_equal(module->read_tile(open, &header, 1, 64, 0, 0, 3, true, pixels), AG_OK);
     module->close_levels(open);
+}
+
+static int count_descriptors(void)
+{
+    DIR *all = opendir("/proc/self/fd");
+    int count = 0;
+    if (!all)
+        skip();
+    while (readdir(all))
+        count++;
+    closedir(all);
+    return count;
+}
+
+/* Files that stay open leave descriptors to others: a process may have 1024 of them, or 256. */
+static void few_files_stay_open(void **state)
+{
+    (void)state;
+    image_levels *levels[MANY];
+    tiff_write_levels("a.tx", 256, 3, number);
+    assert_non_null(image_module_get(message, sizeof message));
+    const int before = count_descriptors();
+    for (int k = 0; k < MANY; k++) {
+        assert_int_equal(image_levels_open(NULL, in_folder("a.tx"), &levels[k]), AG_OK);
+        assert_non_null(levels[k]);
+    }
+    const int more = count_descriptors() - before;
+    for (int k = 0; k < MANY; k++)
+        image_levels_close(levels[k]);
+    if (more < 1 || more > DESCRIPTORS_MOST)
+        fail_msg("%d files take %d descriptors", MANY, more);
+    assert_int_equal(count_descriptors(), before);
 }
 
 /* Another picture in the same file, of the same size and time as far as stat can tell. */
@@ -96,6 +133,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         TEST_IN_FOLDER(tiles_are_of_the_header),
+        TEST_IN_FOLDER(few_files_stay_open),
         TEST_IN_FOLDER(a_file_that_was_exchanged_is_an_error),
         TEST_IN_FOLDER(encodings_are_in_the_fingerprint),
     };
