@@ -89,10 +89,12 @@ AG_API ag_status ag_scene_set_hint(ag_scene *scene, ag_scene_hint hint, const ch
  * vectors: the last column is the translation, the last row is 0 0 0 1. A matrix holds at the opening of the shutter
  * (pbrt's time 0); for objects that move, a second one holds at its closing (time 1). Between the two, translation is
  * linear and rotation uniform, as in pbrt. Shapes and instances may have more, for evenly spaced times: end_count
- * matrices stand one after the other at the end's address, of which the last holds at the closing. So of a wheel that
- * makes a whole turn, or of what goes round a corner, three or more matrices say where it is in between: of two, less
- * than half a turn apart, rotation takes the shorter way round. The vertices of meshes may move as well: see
- * ag_shape. */
+ * matrices stand one after the other at the end's address, of which the last holds at the closing. Rotation takes the
+ * shorter way round from each matrix to the next, and at half a turn either: so a wheel that makes a whole turn needs
+ * more than two steps, such as three of 120 degrees. Motion is traced in at most 128 steps, in each of which all points
+ * go straight: where end_count allows for it, there are several from one matrix to the next, to keep rotation uniform;
+ * from 65 ends on there is one, and what turns by 30 degrees in it is smaller by 3.4 % half way. The vertices of meshes
+ * may move as well: see ag_shape. */
 
 /* A picture in memory, which replaces the file of its name in each "string filename" of textures and lights added
  * later: packed, top row first; grey, grey and alpha, RGB, or RGB and alpha. One of bytes and floats is set, the other
