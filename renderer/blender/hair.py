@@ -10,6 +10,8 @@ from .cameras import is_flat, matrix_of
 # points: (count, 3), or of a strand that moves (steps, count, 3). radii: at root and tip.
 Strand = namedtuple("Strand", "points radii material")
 
+FLAT = object()  # the pose of hair whose object has no inverse
+
 
 class Tuft:
     """The hair of an object. places: its matrices as the shutter opens, and behind that (or None), for each place."""
@@ -77,11 +79,13 @@ def _in_object(points, world_from_object):
 
 
 def particle_pose(owner, poll=lambda: None):
-    """Where the hair of an object's particle systems is now, in its own space: an array for each; None: there is none, or
-    the object is flat."""
+    """Where the hair of an object's particle systems is now, in its own space: an array for each; None: there is none;
+    FLAT: the object is flat."""
     systems, world_from_object = _systems(owner), matrix_of(owner.matrix_world)
-    if not systems or is_flat(world_from_object):
+    if not systems:
         return None
+    if is_flat(world_from_object):
+        return FLAT
     return [_in_object(_strands(system, owner, poll), world_from_object) for system in systems]
 
 

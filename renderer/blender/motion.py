@@ -76,17 +76,22 @@ def _shapes(depsgraph, k, last, before):
 
 
 def _strands(depsgraph, k, last, poll):
-    """Where hair is at step k, of what has a pose at it."""
-    strands = {}
+    """Where hair is at step k, of what is shown with hair and has a pose at it; hair is read once for all of an object's
+    instances."""
+    strands, by_object = {}, {}
+    if not depsgraph.view_layer_eval.use_strand:
+        return strands
     for instance in depsgraph.object_instances:
-        if not _may_move(instance) or not _has(instance, "use_deform_motion") or k % _stride(instance, last):
+        shown = instance.object
+        is_curves = shown.type == "CURVES"
+        if (not (instance.show_self if is_curves else instance.show_particles and shown.type == "MESH")
+                or not _may_move(instance) or not _has(instance, "use_deform_motion") or k % _stride(instance, last)):
             continue
-        if instance.object.type == "CURVES":
-            strands[_key(instance)] = hair.curves_pose(instance.object)
-        elif instance.show_particles and instance.object.type == "MESH":
-            pose = hair.particle_pose(instance.object, poll)
-            if pose:
-                strands[_key(instance)] = pose
+        name = shown.name_full, is_curves
+        if name not in by_object:
+            by_object[name] = hair.curves_pose(shown) if is_curves else hair.particle_pose(shown, poll)
+        if by_object[name] is not None:
+            strands[_key(instance)] = by_object[name]
     return strands
 
 
@@ -146,6 +151,10 @@ class Motion:
             return None
         poses = self._at_steps(instance, self._strands)
         if all(pose is None for pose in poses):
+            return None
+        if any(pose is hair.FLAT for pose in poses):
+            self._notes.say(f'object "{instance.object.name}": it is flat for a while as the shutter is open, and its hair does '
+                            'not deform')
             return None
         if any(pose is None or [one.shape for one in pose] != [one.shape for one in now] for pose in poses):
             self._notes.say(f'object "{instance.object.name}": its hair has other strands while the shutter is open, and '
