@@ -20,9 +20,10 @@ typedef struct eye_path {
     sampler where; /* the branch's; each branch takes other numbers of the same sequences */
     scene_ray ray; /* to be followed next */
     rgb throughput;
-    float share;        /* of the camera sample, (0, 1]: 1 over the number of branches */
-    int vertex;         /* the number of the vertex that the ray will meet, from 0 on */
-    int vertex_key;     /* added to that number where random numbers are drawn */
+    float share;    /* of the camera sample, (0, 1]: those of all branches and ways into which it is split sum to 1 */
+    int vertex;     /* the number of the vertex that the ray will meet, from 0 on */
+    int ways_taken; /* at how many smooth surfaces the path was split by their two ways */
+    int vertex_key; /* added to that number where random numbers are drawn */
     int roulette_after; /* the vertex from which on roulette decides whether the path goes on */
     int scatterings;    /* so far; to pass a pane straight may count as none, and then changes no member below */
     int first_gathered; /* the number, from 1 on, of the first scattering by a gathered lobe; 0: none */

@@ -15,10 +15,11 @@ static const float SQRT_2 = 1.41421356f;
  * have other sequences, and likewise the numbers that decide whether there is a gather ray. */
 enum { KEY_OF_BRANCHES = 1 << 16, KEY_OF_RAYS = 1 << 24, KEY_OF_CHANCE = 1 << 30 };
 
-/* A path is split at a smooth surface only where the variance of a choice between its two ways, in the square of the
- * light that the eye sees, is above this. Glass that is seen directly is then split at each of its faces, faint
- * reflections in it no more; at an eighth or eight times as much, error times CPU time in pictures of glass is the same
- * or more. */
+/* A path is split at so many smooth surfaces, and only where the variance of a choice between their two ways, in the
+ * square of the light that the eye sees, is above WAYS_VARIANCE. Rays times squared error at four samples, over that of
+ * chance alone: a glass pot 0.78, a pool 0.73, twenty thick sheets in a row 0.85, 400 balls 0.99, thirty panes in a row
+ * 1.10; the last three 2.0, 2.4 and 6.3 where the number of surfaces is not bounded. */
+enum { WAYS_MAX = 3 };
 static const float WAYS_VARIANCE = 1.0f / 8192.0f;
 
 /* The parts of the light that a diffuse vertex sends on, but for gathered light, which the sample gets later. */
@@ -188,15 +189,22 @@ static void add_diffuse(const transport *t, eye_sample *sample, const diffuse_li
     }
 }
 
-/* Returns the number of branches, as the exponent of a power of two, into which the path is split at the vertex. Only
- * one that is seen by smooth surfaces alone splits it, and into the fewer the less of it is seen. */
+/* Returns how much of the light behind the path the eye sees, at most 1. The throughput alone may be more, as radiance
+ * grows where it leaves glass, and then bounds nothing. */
+static float weight_of(const eye_path *path) { return path->share * fminf(rgb_max(path->throughput), 1.0f); }
+
+/* Returns the number of branches, as the exponent of a power of two, into which the path is split at the vertex: at one
+ * that is seen directly or by a smooth surface, where it is traced on in more than one direction; into the fewer, the
+ * less of it is seen. */
 static uint32_t branch_bits(const transport *t, const eye_path *path, const vertex *v)
 {
     if (path->scattered_pdf > 0.0f || transport_is_open_pane(t, v) || !bsdf_has_many_ways(&v->scattering, BSDF_TRACED))
         return 0;
+    float reflected = bsdf_smooth_reflection_share(&v->scattering, BSDF_TRACED);
+    if (reflected == 0.0f || reflected == 1.0f) /* all reflected, say: branches would be one line */
+        return 0;
     int most = bsdf_is_sampled_from_light(&v->scattering, BSDF_TRACED) ? BRANCHES_MAX : SMOOTH_BRANCHES_MAX;
-    return nearest_bits((float)most * bsdf_probability(&v->scattering, BSDF_TRACED) *
-                        fminf(path->share * rgb_max(path->throughput), 1.0f));
+    return nearest_bits((float)most * bsdf_probability(&v->scattering, BSDF_TRACED) * weight_of(path));
 }
 
 static void follow(const transport *t, eye_worker *worker, const camera_sample *from, eye_path path,
@@ -209,7 +217,7 @@ static void follow_branches(const transport *t, eye_worker *worker, const camera
     for (int i = 0; i < count; i++) {
         eye_path branch = *path;
         branch.where = sampler_branch(&path->where, bits, (uint32_t)i);
-        branch.vertex_key = KEY_OF_BRANCHES * (int)bits;
+        branch.vertex_key += KEY_OF_BRANCHES * (int)bits;
         branch.share /= (float)count;
         if (eye_path_go_on(t, v, BSDF_TRACED, eye_path_u_lobe(&branch), count, &branch))
             follow(t, worker, from, branch, sample);
@@ -226,12 +234,13 @@ typedef struct two_ways {
 static bool split_ways(const eye_path *path, const vertex *v, two_ways *out)
 {
     float reflected = bsdf_smooth_reflection_share(&v->scattering, BSDF_TRACED), transmitted = 1.0f - reflected;
-    float weight = path->share * rgb_max(path->throughput);
-    if (!(reflected * transmitted * weight * weight > WAYS_VARIANCE))
+    float weight = weight_of(path);
+    if (path->ways_taken >= WAYS_MAX || !(reflected * transmitted * weight * weight > WAYS_VARIANCE))
         return false;
     float u_reflected = 0.5f * reflected, u_transmitted = 1.0f - 0.5f * transmitted;
     bool is_mirror = reflected > transmitted;
     *out = (two_ways){*path, *path, is_mirror ? u_reflected : u_transmitted, is_mirror ? u_transmitted : u_reflected};
+    out->bright.ways_taken = out->faint.ways_taken = path->ways_taken + 1;
     out->bright.share *= fmaxf(reflected, transmitted);
     out->faint.share *= fminf(reflected, transmitted);
     out->faint.where = sampler_apart(&path->where, (uint32_t)path->vertex);

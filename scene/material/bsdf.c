@@ -56,10 +56,10 @@ float bsdf_smooth_reflection_share(const bsdf *b, bsdf_lobes lobes)
         if (!(lobe->group & lobes) || !(lobe->probability > 0.0f))
             continue;
         if (only || !lobe->is_delta || !lobe_passes(b, lobe))
-            return 0.0f;
+            return -1.0f;
         only = lobe;
     }
-    return only ? bsdf_lobe_type_of(only)->reflection_share(b, frame_to_local(&b->shading, b->out)) : 0.0f;
+    return only ? bsdf_lobe_type_of(only)->reflection_share(b, frame_to_local(&b->shading, b->out)) : -1.0f;
 }
 
 /* Whether facets may send light through the surface: between the horizons of two normals that are apart. */

@@ -121,7 +121,7 @@ bool bsdf_is_sampled_from_light(const bsdf *b, bsdf_lobes lobes);
 bool bsdf_has_many_ways(const bsdf *b, bsdf_lobes lobes);
 
 /* Returns the share of u_lobe, from 0 up, in which bsdf_sample_direction reflects, where these lobes are one smooth
- * lobe that transmits too; 0 where they are not. */
+ * lobe that transmits too; less than 0 where they are not. */
 float bsdf_smooth_reflection_share(const bsdf *b, bsdf_lobes lobes);
 
 /* Returns whether any of these lobes that is not smooth scatters light from behind the surface, as seen from `out`. */

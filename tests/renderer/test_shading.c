@@ -151,6 +151,23 @@ static void both_ways_of_a_sheet(void **state)
     eye_reset(&e);
 }
 
+/* Sheets of one side alone, each of which light leaves as if it came out of glass: radiance grows at each, which is no
+ * reason to split the path ever more. */
+static void ways_are_bounded(void **state)
+{
+    (void)state;
+    enum { SHEETS = 20, LEAVES = 8, TRIES = 100 };
+    char text[SHEETS * 100 + 400] = ABOVE_AND_BELOW "Rotate 180 1 0 0 ";
+    for (int i = 0; i < SHEETS; i++)
+        strcat(text, "Translate 0 0 0.01 Shape \"disk\" \"float radius\" 50 ");
+    eye e;
+    eye_init_with_photons(&e, text, 1000, NEAREST);
+    for (uint32_t i = 0; i < TRIES; i++)
+        radiance_along(&e, i, (vec3){0.0f, 0.0f, 1.0f}, (vec3){0.0f, 0.0f, -1.0f}, INFINITY);
+    assert_true(e.worker->rays_path < (uint64_t)TRIES * LEAVES * (SHEETS + 2));
+    eye_reset(&e);
+}
+
 /* Behind a mirror that hardly reflects, a diffuse surface shows the estimate at it: no gather ray is sent. Photons lie
  * evenly over the unit sphere, and the bound is as in test_final_gather.c. */
 static void low_contributions_are_looked_up(void **state)
@@ -176,9 +193,12 @@ static void low_contributions_are_looked_up(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(lamp_in_a_mirror),     cmocka_unit_test(floor_under_a_ball),
-        cmocka_unit_test(chain_of_mirrors),     cmocka_unit_test(both_ways_of_glass),
-        cmocka_unit_test(both_ways_of_a_sheet), cmocka_unit_test(low_contributions_are_looked_up)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(lamp_in_a_mirror),
+                                       cmocka_unit_test(floor_under_a_ball),
+                                       cmocka_unit_test(chain_of_mirrors),
+                                       cmocka_unit_test(both_ways_of_glass),
+                                       cmocka_unit_test(both_ways_of_a_sheet),
+                                       cmocka_unit_test(ways_are_bounded),
+                                       cmocka_unit_test(low_contributions_are_looked_up)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
