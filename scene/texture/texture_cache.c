@@ -39,7 +39,8 @@ typedef struct kept_header {
     uint8_t as_bytes, has_alpha, has_chromaticities, is_first_of_several;
 } kept_header;
 
-static const char MAGIC[8] = "AGTILES";
+/* Another one for each layout; files with an earlier one are made anew. */
+static const char MAGIC[8] = "AGTILE2";
 
 struct texture_kept {
     tile_file file;

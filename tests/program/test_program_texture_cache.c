@@ -165,6 +165,31 @@ static void test_damage(void **state)
     picture_reset(&whole);
 }
 
+/* Files that do not say whether theirs was the first of several pictures are made anew. */
+static void test_earlier_files(void **state)
+{
+    (void)state;
+    static const char EARLIER[8] = "AGTILES";
+    const char *scene = room(1);
+    char paths[3][512];
+    picture whole = RENDER_TOLD(scene, "of tiles are kept in", KEPT),
+            again = RENDER_TOLD(scene, "of tiles are in", KEPT);
+    expect_same(&again, &whole);
+    assert_int_equal(list_kept(paths, 3), 2);
+    for (int k = 0; k < 2; k++) {
+        FILE *file = fopen(paths[k], "r+");
+        assert_non_null(file);
+        assert_int_equal(fwrite(EARLIER, 1, sizeof EARLIER, file), sizeof EARLIER);
+        assert_int_equal(fclose(file), 0);
+    }
+    picture anew = RENDER_TOLD(scene, "of tiles are kept in", KEPT);
+    expect_same(&anew, &whole);
+    assert_int_equal(list_kept(paths, 3), 2);
+    picture_reset(&whole);
+    picture_reset(&again);
+    picture_reset(&anew);
+}
+
 /* Pictures are removed until the folder is within its bound, the longest unused first. A picture that is larger than
  * the bound is not kept. */
 static void test_bound(void **state)
@@ -255,8 +280,8 @@ static void test_crowd(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        TEST_IN_FOLDER(test_same_bits), TEST_IN_FOLDER(test_damage), TEST_IN_FOLDER(test_bound),
-        TEST_IN_FOLDER(test_no_folder), TEST_IN_FOLDER(test_crowd),
+        TEST_IN_FOLDER(test_same_bits), TEST_IN_FOLDER(test_damage),    TEST_IN_FOLDER(test_earlier_files),
+        TEST_IN_FOLDER(test_bound),     TEST_IN_FOLDER(test_no_folder), TEST_IN_FOLDER(test_crowd),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
