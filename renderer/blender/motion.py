@@ -17,8 +17,10 @@ def _key(instance):
 
 
 def _owners(instance):
-    """The object, and what it is an instance for."""
-    return [instance.object] + ([instance.parent] if instance.is_instance and instance.parent else [])
+    """The object, and what it is an instance for, as the file has them: Cycles' settings of the copies that the graph lends
+    are made when they are read, and Blender never frees those of an instance."""
+    owners = [instance.object] + ([instance.parent] if instance.is_instance and instance.parent else [])
+    return [owner.original for owner in owners]
 
 
 def _steps_of(instance):
