@@ -191,7 +191,7 @@ bool file_conflicts_with_scene(const options *o, const ag_scene *scene)
 
 /* --- among frames --- */
 
-/* What a frame does with a file, as a key that files which are one have in common. */
+/* A use of a file by a frame. Names that lead to one file give the same key. */
 typedef struct file_use {
     dev_t device; /* of the file, or of its folder */
     ino_t inode;
@@ -222,7 +222,7 @@ static void add_use(use_list *list, const char *path, int frame, int file)
         list->uses[list->count++] = (file_use){f.device, f.inode, f.is_there ? 0 : hash_name(f.name), frame, file};
 }
 
-/* What all frames read under one name is noted with the first of them. */
+/* A file that all frames read under one name is noted once, with the first frame. */
 static bool is_noted(const char *pattern, int frame)
 {
     return pattern && strcmp(pattern, "-") != 0 && (frame == 0 || frames_has_placeholder(pattern));

@@ -93,6 +93,17 @@ static int distance(const char *a, const char *b)
     return rows[length_a][length_b];
 }
 
+/* Keeps the answer to a word where fewer slips lead to it than to the best one so far. */
+static void consider(const char *name, const char *word, const char *answer, int *in_out_nearest,
+                     const char **in_out_best)
+{
+    const int slips = distance(name, word);
+    if (slips < *in_out_nearest) {
+        *in_out_nearest = slips;
+        *in_out_best = answer;
+    }
+}
+
 const char *option_guess(const char *name)
 {
     const char *best = NULL;
@@ -102,19 +113,9 @@ const char *option_guess(const char *name)
     for (size_t i = 0; i < sizeof OTHERS / sizeof *OTHERS; i++)
         if (strcmp(name, OTHERS[i][0]) == 0)
             return OTHERS[i][1];
-    for (size_t i = 0; option_at(i, &option); i++) {
-        int slips = distance(name, option.text->name);
-        if (slips < nearest) {
-            nearest = slips;
-            best = option.text->name;
-        }
-    }
-    for (size_t i = 0; i < sizeof OTHERS / sizeof *OTHERS; i++) {
-        int slips = distance(name, OTHERS[i][0]);
-        if (slips < nearest) {
-            nearest = slips;
-            best = OTHERS[i][1];
-        }
-    }
+    for (size_t i = 0; option_at(i, &option); i++)
+        consider(name, option.text->name, option.text->name, &nearest, &best);
+    for (size_t i = 0; i < sizeof OTHERS / sizeof *OTHERS; i++)
+        consider(name, OTHERS[i][0], OTHERS[i][1], &nearest, &best);
     return best;
 }

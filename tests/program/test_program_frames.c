@@ -42,7 +42,8 @@ static void test_frames(void **state)
                "'a.exr' has no placeholder for the frame's number");
 }
 
-/* What a frame would write over is refused before the first one: what another frame reads or has written. */
+/* A run in which one frame would write over a file that another frame reads or writes is refused before its first
+ * frame. */
 static void test_frames_in_each_others_files(void **state)
 {
     (void)state;

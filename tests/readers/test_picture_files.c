@@ -92,11 +92,8 @@ static void several_pictures_are_told(void **state)
     reading_destroy(&r);
 }
 
-/* A file is asked after when it is opened, not by its name before. */
-static void confined_scenes_open_no_other_pictures(void **state)
+static void write_pixel(const char *name, float gray)
 {
-    (void)state;
-    static const float PIXEL[3] = {1, 1, 1};
     static const char *const NAMES[] = {"R", "G", "B"};
     const image_description d = {.width = 1,
                                  .height = 1,
@@ -105,7 +102,14 @@ static void confined_scenes_open_no_other_pictures(void **state)
                                  .channel_count = 3,
                                  .channel_names = NAMES,
                                  .type = IMAGE_FLOAT};
-    write_parts("outside.exr", &d, PIXEL);
+    write_parts(name, &d, (const float[3]){gray, gray, gray});
+}
+
+/* A file is asked after when it is opened, not by its name before. */
+static void confined_scenes_open_no_other_pictures(void **state)
+{
+    (void)state;
+    write_pixel("outside.exr", 1.0f);
     assert_int_equal(mkdir(in_folder("inside"), 0755), 0);
     char path[512];
     const char *wrong;
@@ -132,20 +136,11 @@ static void opened_files_keep_their_content(void **state)
 {
     (void)state;
     char first[512], path[INPUT_FILE_OPENED_SIZE];
-    static const char *const NAMES[] = {"R", "G", "B"};
-    static const float PIXELS[2][3] = {{0.25f, 0.25f, 0.25f}, {0.75f, 0.75f, 0.75f}};
-    const image_description d = {.width = 1,
-                                 .height = 1,
-                                 .full_width = 1,
-                                 .full_height = 1,
-                                 .channel_count = 3,
-                                 .channel_names = NAMES,
-                                 .type = IMAGE_FLOAT};
     snprintf(first, sizeof first, "%s", in_folder("a.exr"));
-    write_parts("a.exr", &d, PIXELS[0]);
+    write_pixel("a.exr", 0.25f);
     const int descriptor = input_file_open(NULL, first, message, sizeof message);
     assert_true(descriptor >= 0);
-    write_parts("b.exr", &d, PIXELS[1]);
+    write_pixel("b.exr", 0.75f);
     assert_int_equal(rename(in_folder("b.exr"), first), 0);
     image read;
     const char *opened = input_file_opened_path(descriptor, first, path);

@@ -399,7 +399,7 @@ static void bent_at(double time, char *out_text, size_t size)
     }
 }
 
-/* What rays of a time meet is what they would meet of a curve that stood still as it is then. */
+/* At each time, rays meet a moving curve where they would meet a still curve with the points of that time. */
 static void points_that_move_are_where_their_time_says(void **state)
 {
     (void)state;

@@ -365,7 +365,8 @@ bool pbrt_is_moving(const pbrt_parser *parser);
  * directive. */
 ag_status pbrt_make_motion(pbrt_parser *parser, const transform *start, const transform *end, file_location where,
                            const char *directive, motion *out_motion);
-/* The same past all that the graphics state has between the two; the path's segments are to be freed. */
+/* Makes the path of the current transform, from its start by way of state.between to its end. The caller frees the
+ * path's segments. Errors: as pbrt_make_motion, and AG_ERROR_MEMORY. */
 ag_status pbrt_make_path(pbrt_parser *parser, file_location where, const char *directive, motion_path *out_path);
 /* Whether the current transform cannot be undone; then a warning, once for each of what, that it is left out. */
 bool pbrt_is_flattened(pbrt_parser *parser, file_location where, const char *what);
