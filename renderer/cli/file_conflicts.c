@@ -4,6 +4,7 @@
 #include "file_conflicts.h"
 
 #include "frame_options.h"
+#include "name_hash.h"
 #include "picture_mark.h"
 
 #include <limits.h>
@@ -207,19 +208,11 @@ typedef struct use_list {
     size_t count;
 } use_list;
 
-static uint64_t hash_name(const char *name)
-{
-    uint64_t hash = 0xcbf29ce484222325; /* FNV-1a */
-    for (; *name; name++)
-        hash = (hash ^ (unsigned char)*name) * 0x100000001b3;
-    return hash;
-}
-
 static void add_use(use_list *list, const char *path, int frame, int file)
 {
     const named_file f = find(path);
     if (f.is_there ? f.is_regular : f.name[0] != '\0')
-        list->uses[list->count++] = (file_use){f.device, f.inode, f.is_there ? 0 : hash_name(f.name), frame, file};
+        list->uses[list->count++] = (file_use){f.device, f.inode, f.is_there ? 0 : name_hash(f.name), frame, file};
 }
 
 /* A file that all frames read under one name is noted once, with the first frame. */

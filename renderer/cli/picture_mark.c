@@ -2,10 +2,11 @@
 #define _POSIX_C_SOURCE 200809L
 #include "picture_mark.h"
 
+#include "name_hash.h"
+
 #include <errno.h>
 #include <fcntl.h>
 #include <limits.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -24,10 +25,7 @@ static char *beside(const char *outfile, const char *suffix)
     size_t kept = length;
     char hash[HASH_LENGTH + 1] = "";
     if (length + suffix_length > NAME_MAX) {
-        uint64_t number = 0xcbf29ce484222325u;
-        for (size_t i = 0; i < length; i++)
-            number = (number ^ (unsigned char)base[i]) * 0x100000001b3u;
-        snprintf(hash, sizeof hash, "-%016llx", (unsigned long long)number);
+        snprintf(hash, sizeof hash, "-%016llx", (unsigned long long)name_hash(base));
         kept = NAME_MAX - suffix_length - HASH_LENGTH;
     }
     size_t size = folder + kept + sizeof hash + suffix_length;

@@ -3,21 +3,15 @@
 #define _POSIX_C_SOURCE 200809L
 #include "text/name_table.h"
 
+#include "name_hash.h"
+
 #include <stdlib.h>
 #include <string.h>
-
-static uint64_t hash_name(const char *name)
-{
-    uint64_t hash = 0xcbf29ce484222325u;
-    for (; *name; name++)
-        hash = (hash ^ (unsigned char)*name) * 0x100000001b3u;
-    return hash;
-}
 
 /* The slot that holds the name, or the free one where it belongs. */
 static name_entry *find_slot(name_entry *slots, size_t capacity, const char *name)
 {
-    size_t i = (size_t)hash_name(name) & (capacity - 1);
+    size_t i = (size_t)name_hash(name) & (capacity - 1);
     while (slots[i].name && strcmp(slots[i].name, name) != 0)
         i = (i + 1) & (capacity - 1);
     return &slots[i];
