@@ -40,7 +40,7 @@ typedef struct kept_header {
 } kept_header;
 
 /* Another one for each layout; files with an earlier one are made anew. */
-static const char MAGIC[8] = "AGTILE2";
+static const char MAGIC[8] = "AGTILE3";
 
 struct texture_kept {
     tile_file file;

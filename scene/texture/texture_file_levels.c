@@ -112,8 +112,8 @@ static void take_tile(const texture_file_levels *l, int level, int channel_count
         for (size_t k = 0; k < count; k++) {
             look->is_opaque = look->is_opaque && (l->as_bytes ? from[k] == 255 : values[k] == 1.0f);
             if (!l->as_bytes) {
-                look->least = fminf(look->least, values[k]);
-                look->most = fmaxf(look->most, values[k]);
+                look->least = values[k] < look->least ? values[k] : look->least;
+                look->most = values[k] > look->most ? values[k] : look->most;
             }
         }
     }

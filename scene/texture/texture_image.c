@@ -129,8 +129,8 @@ static void find_range(texture_image *i)
     i->least = INFINITY;
     i->most = -INFINITY;
     for (size_t k = 0; k < count; k++) {
-        i->least = fminf(i->least, values[k]);
-        i->most = fmaxf(i->most, values[k]);
+        i->least = values[k] < i->least ? values[k] : i->least;
+        i->most = values[k] > i->most ? values[k] : i->most;
     }
 }
 

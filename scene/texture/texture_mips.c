@@ -1,10 +1,12 @@
 /* texture_mips.c: see texture_mips.h. */
 #include "texture/texture_mips.h"
 
+#include "atomics.h"
 #include "parallel_for.h"
 #include "status.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 static float value_at(const texture_level *l, size_t at)
 {
@@ -98,41 +100,88 @@ static cover cover_of(uint32_t fine, uint32_t coarse, uint32_t index)
 typedef struct mip_job {
     const texture_level *fine;
     texture_level *coarse;
+    atomic_u32 has_failed; /* relaxed: out of memory; read when all is done */
 } mip_job;
 
-static void average_pixel(const texture_level *fine, const cover *across, const cover *down, float out_sums[3])
+/* A row's values, linear. */
+static void widen_row(const texture_level *l, uint32_t y, float *out)
 {
-    for (uint32_t channel = 0; channel < fine->channel_count; channel++)
-        out_sums[channel] = 0.0f;
-    for (uint32_t y = 0; y < down->count; y++)
-        for (uint32_t x = 0; x < across->count; x++) {
-            const float share = down->share[y] * across->share[x];
-            const size_t at = ((size_t)(down->first + y) * fine->width + across->first + x) * fine->channel_count;
-            for (uint32_t channel = 0; channel < fine->channel_count; channel++)
-                out_sums[channel] += share * value_at(fine, at + channel);
-        }
+    const size_t count = (size_t)l->width * l->channel_count, from = y * count;
+    if (l->sample == TEXTURE_BYTES && l->table)
+        for (size_t k = 0; k < count; k++)
+            out[k] = l->table[l->bytes[from + k]];
+    else if (l->sample == TEXTURE_PACKED)
+        for (size_t k = 0; k < count; k++)
+            out[k] = (float)l->packed[from + k] * (1.0f / 65535.0f);
+    else
+        for (size_t k = 0; k < count; k++)
+            out[k] = value_at(l, from + k);
+}
+
+/* Means of the rows' values, which lie one behind the other, over the width of each coarse pixel. */
+static void average_row(const texture_level *fine, uint32_t width, const cover *down, const float *rows, float *out)
+{
+    const size_t channels = fine->channel_count, row_values = fine->width * channels;
+    for (uint32_t x = 0; x < width; x++, out += channels) {
+        const cover across = cover_of(fine->width, width, x);
+        for (size_t channel = 0; channel < channels; channel++)
+            out[channel] = 0.0f;
+        for (uint32_t row = 0; row < down->count; row++)
+            for (uint32_t k = 0; k < across.count; k++) {
+                const float share = down->share[row] * across.share[k];
+                const float *from = rows + row * row_values + (across.first + k) * channels;
+                for (size_t channel = 0; channel < channels; channel++)
+                    out[channel] += share * from[channel];
+            }
+    }
+}
+
+/* average_row where each coarse pixel covers two by two: the same sums, in the same order. */
+static void average_fours(size_t channels, uint32_t width, const float *upper, const float *lower, float *out)
+{
+    for (uint32_t x = 0; x < width; x++, out += channels, upper += 2 * channels, lower += 2 * channels)
+        for (size_t channel = 0; channel < channels; channel++)
+            out[channel] = 0.0f + 0.25f * upper[channel] + 0.25f * upper[channels + channel] + 0.25f * lower[channel] +
+                           0.25f * lower[channels + channel];
+}
+
+static void store_row(texture_level *l, uint32_t y, const float *values)
+{
+    const size_t count = (size_t)l->width * l->channel_count, to = y * count;
+    if (l->sample == TEXTURE_FLOATS)
+        memcpy(l->values + to, values, count * sizeof *values);
+    else
+        for (size_t k = 0; k < count; k++)
+            l->packed[to + k] = (uint16_t)(values[k] * 65535.0f + 0.5f);
 }
 
 static void average_rows(void *user, uint64_t begin, uint64_t end, uint64_t block, unsigned worker)
 {
     (void)block, (void)worker;
-    const mip_job *job = user;
+    enum { COVERED_MAX = 3 };
+    mip_job *job = user;
     const texture_level *fine = job->fine;
     texture_level *coarse = job->coarse;
+    const size_t channels = fine->channel_count, row_values = fine->width * channels;
+    float *rows = malloc((COVERED_MAX * row_values + coarse->width * channels) * sizeof *rows);
+    if (!rows) {
+        store_relaxed_u32(&job->has_failed, 1);
+        return;
+    }
+    float *means = rows + COVERED_MAX * row_values;
     for (uint32_t y = (uint32_t)begin; y < end; y++) {
         const cover down = cover_of(fine->height, coarse->height, y);
-        for (uint32_t x = 0; x < coarse->width; x++) {
-            const cover across = cover_of(fine->width, coarse->width, x);
-            const size_t at = ((size_t)y * coarse->width + x) * coarse->channel_count;
-            float sums[3];
-            average_pixel(fine, &across, &down, sums);
-            for (uint32_t channel = 0; channel < coarse->channel_count; channel++)
-                if (coarse->sample == TEXTURE_PACKED)
-                    coarse->packed[at + channel] = (uint16_t)(sums[channel] * 65535.0f + 0.5f);
-                else
-                    coarse->values[at + channel] = sums[channel];
-        }
+        for (uint32_t k = 0; k < down.count; k++)
+            widen_row(fine, down.first + k, rows + k * row_values);
+        if (fine->width % 2 || fine->height % 2)
+            average_row(fine, coarse->width, &down, rows, means);
+        else if (channels == 3) /* each with a constant, for the compiler */
+            average_fours(3, coarse->width, rows, rows + row_values, means);
+        else
+            average_fours(1, coarse->width, rows, rows + row_values, means);
+        store_row(coarse, y, means);
     }
+    free(rows);
 }
 
 static size_t level_count_of_values(const texture_level *l) { return (size_t)l->width * l->height * l->channel_count; }
@@ -151,12 +200,13 @@ static ag_status make_level(run_context *run, const texture_level *fine, texture
         out->packed = malloc(count * sizeof *out->packed);
     if (!out->values && !out->packed)
         return AG_ERROR_MEMORY;
-    mip_job job = {fine, out};
-    if (!run || !run->pool) {
+    mip_job job = {.fine = fine, .coarse = out};
+    ag_status status = AG_OK;
+    if (run && run->pool)
+        status = parallel_for(run, out->height, ROWS, average_rows, &job, AG_PHASE_PHOTONS, 0.0, 0.0);
+    else
         average_rows(&job, 0, out->height, 0, 0);
-        return AG_OK;
-    }
-    return parallel_for(run, out->height, ROWS, average_rows, &job, AG_PHASE_PHOTONS, 0.0, 0.0);
+    return status == AG_OK && load_relaxed_u32(&job.has_failed) ? AG_ERROR_MEMORY : status;
 }
 
 ag_status texture_mips_create(run_context *run, const texture_level *finest, texture_mips **out_mips)

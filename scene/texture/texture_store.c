@@ -101,24 +101,14 @@ static void cut_tile(const put_job *job, size_t number, unsigned char *out)
                count * pixel_bytes);
 }
 
-/* in_out_misses: how many tiles in a row could not be packed; after some no other is tried. Gives an errno, or 0. */
-static int put_tile(const put_job *job, size_t number, unsigned char *buffers, int *in_out_misses)
+/* scratch: of tile_scratch_bytes; buffers: of two tiles. Gives an errno, or 0. */
+static int put_tile(const put_job *job, size_t number, uint32_t *scratch, unsigned char *buffers)
 {
-    enum { MISSES_MAX = 2 };
     const texture_tiles *t = job->tiles;
-    const size_t size = tile_bytes_of(t);
-    unsigned char *scratch = buffers + size, *packed = buffers + 2 * size;
+    unsigned char *packed = buffers + tile_bytes_of(t);
     texture_tile *tile = &t->entries[number];
     cut_tile(job, number, buffers);
-    size_t packed_bytes = size;
-    if (*in_out_misses < MISSES_MAX) {
-        packed_bytes = tile_pack(format_of(t), buffers, scratch, packed);
-        *in_out_misses = packed_bytes == size ? *in_out_misses + 1 : 0;
-    } else {
-        packed = buffers;
-    }
-    if (packed_bytes == 0)
-        return ENOMEM;
+    const size_t packed_bytes = tile_pack(format_of(t), buffers, scratch, packed);
     tile->file_bytes = (uint32_t)packed_bytes;
     tile->file_offset = fetch_add_relaxed_u64(&t->file->size_bytes, packed_bytes);
     if (t->file->is_checked)
@@ -130,11 +120,12 @@ static void put_tiles(void *user, uint64_t begin, uint64_t end, uint64_t block, 
 {
     (void)block, (void)worker;
     put_job *job = user;
-    unsigned char *buffers = malloc(3 * tile_bytes_of(job->tiles));
-    int failure = buffers ? 0 : ENOMEM, misses = 0;
+    const size_t scratch_bytes = tile_scratch_bytes(format_of(job->tiles));
+    unsigned char *memory = malloc(scratch_bytes + 2 * tile_bytes_of(job->tiles));
+    int failure = memory ? 0 : ENOMEM;
     for (uint64_t number = begin; number < end && !failure; number++)
-        failure = put_tile(job, (size_t)number, buffers, &misses);
-    free(buffers);
+        failure = put_tile(job, (size_t)number, (uint32_t *)(void *)memory, memory + scratch_bytes);
+    free(memory);
     if (failure)
         store_relaxed_u32(&job->failure, (uint32_t)failure);
 }

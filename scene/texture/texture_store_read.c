@@ -29,17 +29,17 @@ static void drop_one(shard *of)
 /* Errors: as texture_store_state. */
 static ag_status read_packed(const texture_tiles *t, const texture_tile *tile, unsigned char *out_pixels)
 {
-    const size_t size = tile_bytes_of(t);
-    unsigned char *packed = malloc(2 * size);
-    if (!packed)
+    const size_t scratch_bytes = tile_scratch_bytes(format_of(t));
+    unsigned char *memory = malloc(scratch_bytes + tile_bytes_of(t)), *packed = memory + scratch_bytes;
+    if (!memory)
         return AG_ERROR_MEMORY;
     ag_status status = AG_ERROR_SYSTEM;
     if (tile_file_read(t->file->descriptor, packed, tile->file_bytes, tile->file_offset) &&
         (!t->file->is_checked || tile_check(packed, tile->file_bytes) == tile->check))
-        status = tile_unpack(format_of(t), packed, tile->file_bytes, packed + size, out_pixels);
+        status = tile_unpack(format_of(t), packed, tile->file_bytes, (uint32_t *)(void *)memory, out_pixels);
     if (status == AG_ERROR_SYSTEM)
         store_relaxed_u32(&t->file->is_damaged, 1);
-    free(packed);
+    free(memory);
     return status;
 }
 
