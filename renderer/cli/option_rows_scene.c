@@ -270,10 +270,10 @@ static const option_row ROWS[] = {
          {.name = "texture-memory",
           .argument = "SIZE",
           .section = "Scene",
-          .help = "memory for pictures of textures, as 512M or 4G (default), at least 16M, 0: no bound; what is "
+          .help = "memory for pictures of textures, as 512M or 4G (default 1536M), at least 16M, 0: no bound; what is "
                   "beyond it lies in a temporary file, or is read again from files that hold tiles (.tx)",
           .manual =
-              "Memory for the pictures of textures: bytes, or with K, M, G or T 1024, 1024^2, ... times as many; *4G* by "
+              "Memory for the pictures of textures: bytes, or with K, M, G or T 1024, 1024^2, ... times as many; *1536M* by "
               "default, at least *16M*, *0* for no bound. Up to half of it pictures are held whole. What is "
               "beyond lies in a temporary file without a name, in $*TMPDIR* or _/tmp_, of "
               "less than twice the pixels' size, and tiles of it are held in the rest. Files that themselves hold "

@@ -58,7 +58,7 @@ typedef enum ag_up_axis {
     AG_UP_MINUS_Z
 } ag_up_axis;
 
-#define AG_DEFAULT_TEXTURE_MEMORY_BYTES ((uint64_t)4 << 30)
+#define AG_DEFAULT_TEXTURE_MEMORY_BYTES ((uint64_t)3 << 29)
 #define AG_TEXTURE_MEMORY_LEAST_BYTES   ((uint64_t)16 << 20)
 #define AG_DEFAULT_TEXTURE_CACHE_BYTES  ((uint64_t)32 << 30)
 
