@@ -14,7 +14,8 @@
 #include <string.h>
 #include <unistd.h>
 
-enum { LINE_STEP = 5 }; /* percent, between two lines of a log */
+enum { LINE_STEP = 5 };     /* percent, between two lines of a log */
+enum { LINE_SECONDS = 10 }; /* ... while a scene is read, of which only large files take so long */
 
 static pthread_mutex_t terminal = PTHREAD_MUTEX_INITIALIZER; /* one line at a time, from the log or from here */
 
@@ -50,7 +51,7 @@ void progress_init(progress *p, const options *o)
         p->style = o->verbosity < 0 ? PROGRESS_NONE : isatty(STDERR_FILENO) ? PROGRESS_BAR : PROGRESS_PLAIN;
     p->has_precompute = o->render.cache == AG_CACHE_PRECOMPUTE;
     p->has_photons = ag_integrator_has_photons(o->render.integrator);
-    p->begun = p->frame_begun = passes_seconds();
+    p->begun = p->frame_begun = p->line_seconds = passes_seconds();
 }
 
 /* How much of the work of one picture each phase usually is. */
@@ -215,17 +216,27 @@ static void tell_frame_as_json(const progress *p)
                 p->frame_count);
 }
 
-static void tell_bar(progress *p, const char *frame, double left)
+/* "render"; of a scene that is read also how much of it, which is little of the whole work only in most scenes. */
+static const char *phase_text(const progress *p, double fraction, char *out, size_t size)
+{
+    if (p->phase == AG_PHASE_LOAD && fraction >= 0.01)
+        snprintf(out, size, "load %d%%", (int)(100.0 * fraction));
+    else
+        snprintf(out, size, "%s", ag_phase_name(p->phase));
+    return out;
+}
+
+static void tell_bar(progress *p, const char *frame, double fraction, double left)
 {
     enum { WIDTH = 40 };
     terminal_size size;
-    char bar[WIDTH + 1], left_for[48], line[256];
+    char bar[WIDTH + 1], left_for[48], phase[16], line[256];
     const int filled = p->told_percent * WIDTH / 100;
     memset(bar, '.', WIDTH);
     memset(bar, '#', (size_t)(filled < WIDTH ? filled : WIDTH));
     bar[WIDTH] = '\0';
-    snprintf(line, sizeof line, "%s%-10s [%s] %3d%%%s", frame, ag_phase_name(p->phase), bar, p->told_percent,
-             left_text(left, left_for, sizeof left_for));
+    snprintf(line, sizeof line, "%s%-10s [%s] %3d%%%s", frame, phase_text(p, fraction, phase, sizeof phase), bar,
+             p->told_percent, left_text(left, left_for, sizeof left_for));
     /* a line that wraps cannot be cleared, nor the picture above it */
     const bool is_narrow = p->style == PROGRESS_PICTURE && terminal_picture_room(STDERR_FILENO, &size);
     fprintf(stderr, "\r\033[K%.*s", is_narrow ? size.columns - 1 : (int)sizeof line, line);
@@ -244,22 +255,25 @@ void progress_tell(void *user, ag_phase phase, double fraction)
     p->fraction = fraction;
     p->seconds_left = left;
     p->percent = percent;
-    char left_for[48], frame[48] = "";
+    char left_for[48], phase_for[16], frame[48] = "";
     const bool is_new = percent > p->told_percent, is_new_line = percent / LINE_STEP > p->told_percent / LINE_STEP;
     if (p->frame_count > 0)
         snprintf(frame, sizeof frame, "frame %d of %d, ", p->frame + 1, p->frame_count);
     if (is_new && (p->style != PROGRESS_PLAIN || is_new_line || p->told_percent < 0))
         p->told_percent = percent;
+    const bool is_long_load = phase == AG_PHASE_LOAD && now - p->line_seconds >= LINE_SECONDS;
     switch (p->style) {
     case PROGRESS_PICTURE:
         film_watch_draw(&p->watch, stderr, now, false);
-        tell_bar(p, frame, left);
+        tell_bar(p, frame, fraction, left);
         break;
-    case PROGRESS_BAR: tell_bar(p, frame, left); break;
+    case PROGRESS_BAR: tell_bar(p, frame, fraction, left); break;
     case PROGRESS_PLAIN:
-        if (is_new && p->told_percent == percent)
-            fprintf(stderr, "Progress: %d%% (%s%s%s)\n", percent, frame, ag_phase_name(phase),
-                    left_text(left, left_for, sizeof left_for));
+        if (!is_long_load && (!is_new || p->told_percent != percent))
+            break;
+        p->line_seconds = now;
+        fprintf(stderr, "Progress: %d%% (%s%s%s)\n", percent, frame,
+                phase_text(p, fraction, phase_for, sizeof phase_for), left_text(left, left_for, sizeof left_for));
         break;
     case PROGRESS_ALF: /* as render queues read it, from standard output */
         if (is_new) {

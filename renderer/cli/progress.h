@@ -13,6 +13,7 @@ typedef struct progress {
     int verbosity;
     bool bar_is_shown;
     int told_percent;    /* the last one told, -1 before the first */
+    double line_seconds; /* when the last line was told, in passes_seconds */
     bool has_precompute; /* its share of the work */
     bool has_photons;
     int frame, frame_count; /* which of the pictures, from 0 on */

@@ -70,6 +70,24 @@ static void test_many(void **state)
     assert_true(bound < few + (MOST - 2) * whole_bytes);
 }
 
+/* A scene of little text tells how far it is read while its pictures are. */
+static void test_progress(void **state)
+{
+    (void)state;
+    int told = 0;
+    write_pictures();
+    program_run run = RUN("--integrator=path", "--max-depth=1", "--noise=0", "--spp=1", "--texture-memory=18M",
+                          "--progress=json", "-o", "picture.exr", write_columns(MOST));
+    expect_exit(&run, 0);
+    for (const char *at = run.err; (at = strstr(at, "\"load\", \"fraction\": ")) != NULL;) {
+        at += strlen("\"load\", \"fraction\": ");
+        const double fraction = strtod(at, NULL);
+        told += fraction > 0.0 && fraction < 1.0;
+    }
+    assert_true(told > 0);
+    program_run_reset(&run);
+}
+
 /* Of the largest that are made one by one; while they are read only whole ones are held beside it. */
 static void test_default(void **state)
 {
@@ -83,6 +101,7 @@ static void test_default(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {TEST_IN_FOLDER(test_many), TEST_IN_FOLDER(test_default)};
+    const struct CMUnitTest tests[] = {TEST_IN_FOLDER(test_many), TEST_IN_FOLDER(test_progress),
+                                       TEST_IN_FOLDER(test_default)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -370,8 +370,10 @@ ag_status pbrt_read_numbers(pbrt_parser *parser, const char *directive, size_t c
 ag_status pbrt_tell_progress(pbrt_parser *parser)
 {
     const pbrt_lexer *lexer = &parser->files[0].lexer;
-    size_t bytes = (size_t)(lexer->next - lexer->text);
-    if (bytes >= parser->told_bytes + PROGRESS_BYTES) {
+    const size_t bytes = (size_t)(lexer->next - lexer->text);
+    /* a short text may name large files, which take their time */
+    const size_t part = parser->files[0].file.size / 256, step = part < PROGRESS_BYTES ? part : PROGRESS_BYTES;
+    if (bytes > parser->told_bytes + step) {
         parser->told_bytes = bytes;
         run_progress(parser->run, AG_PHASE_LOAD, (double)bytes / (double)parser->files[0].file.size);
     }
