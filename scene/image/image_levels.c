@@ -64,15 +64,19 @@ static void close_file(const image_module *module, open_levels *open)
     open->file = NULL;
 }
 
-/* Takes the descriptor of the file of that name. out_open->file is NULL where it holds no levels, or on failure. */
-static ag_status open_file(const image_module *module, int descriptor, const char *path, open_levels *out_open,
-                           image_levels_header *out_header)
+/* Opens the file as of input_file_open. out_open->file is NULL where it cannot be opened, holds no levels, or on
+ * failure; run: as there. *out_file says which file it is. Errors: those of the module. */
+static ag_status open_file(const run_context *run, const image_module *module, const char *path, open_levels *out_open,
+                           image_levels_header *out_header, struct stat *out_file)
 {
     char message[1024], text[INPUT_FILE_OPENED_SIZE];
+    const int descriptor = input_file_open(run, path, message, sizeof message);
     *out_open = (open_levels){.descriptor = descriptor};
+    if (descriptor < 0)
+        return AG_OK;
     const char *opened = input_file_opened_path(descriptor, path, text);
     ag_status status = AG_OK;
-    if (!png_file_chunks_wrong(opened))
+    if (fstat(descriptor, out_file) == 0 && !png_file_chunks_wrong(opened))
         status = module->open_levels(opened, path, &out_open->file, out_header, message, sizeof message);
     if (!out_open->file)
         close(descriptor);
@@ -83,18 +87,11 @@ ag_status image_levels_open(const run_context *run, const char *path, image_leve
 {
     char message[1024];
     struct stat file;
-    open_levels open;
+    open_levels open = {0};
     image_levels_header header;
     *out_levels = NULL;
     const image_module *module = image_module_get(message, sizeof message);
-    const int descriptor = module ? input_file_open(run, path, message, sizeof message) : -1;
-    if (descriptor < 0)
-        return AG_OK;
-    if (fstat(descriptor, &file) != 0) {
-        close(descriptor);
-        return AG_OK;
-    }
-    const ag_status status = open_file(module, descriptor, path, &open, &header);
+    const ag_status status = module ? open_file(run, module, path, &open, &header, &file) : AG_OK;
     if (!open.file)
         return status == AG_ERROR_MEMORY ? status : AG_OK;
     image_levels *l = calloc(1, sizeof *l);
@@ -145,19 +142,11 @@ static bool is_same_header(const image_levels_header *a, const image_levels_head
  * was asked of the same file. Errors: as image_levels_read. */
 static ag_status open_again(const image_levels *l, open_levels *out_open)
 {
-    char message[128];
     struct stat file;
     image_levels_header header;
-    *out_open = (open_levels){0};
-    const int descriptor = input_file_open(NULL, l->path, message, sizeof message);
-    if (descriptor < 0)
-        return AG_ERROR_INPUT;
-    if (fstat(descriptor, &file) != 0 || !is_same_file(&l->file, &file)) {
-        close(descriptor);
-        return AG_ERROR_INPUT;
-    }
-    AG_TRY(open_file(l->module, descriptor, l->path, out_open, &header));
-    if (out_open->file && !is_same_header(&l->header, &header)) /* it has changed since it was asked after */
+    AG_TRY(open_file(NULL, l->module, l->path, out_open, &header, &file));
+    /* it may have changed since it was asked after */
+    if (out_open->file && !(is_same_file(&l->file, &file) && is_same_header(&l->header, &header)))
         close_file(l->module, out_open);
     return out_open->file ? AG_OK : AG_ERROR_INPUT;
 }
