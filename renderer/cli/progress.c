@@ -100,7 +100,7 @@ static void enter_phase(progress *p, ag_phase phase, double fraction, double now
 
 /* Seconds until all is written, of all pictures; -1: not known yet. A phase that is under way tells by its own pace how
  * long it will take; one that is yet to come takes as long as it did in the pictures before or, in the first, its usual
- * share of the time that is known. */
+ * share of the time that is known, but for the scene's reading. */
 static double seconds_left(const progress *p, double fraction, double now)
 {
     const double least_seconds = 0.5, least_fraction = 0.02; /* to be known by */
@@ -109,11 +109,12 @@ static double seconds_left(const progress *p, double fraction, double now)
     const bool has_pace = done >= least_fraction && took >= least_seconds;
     double left = has_pace ? took * (1.0 - fraction) / done : 0.0, of_one = 0.0;
     usual_shares(p, shares);
-    for (int i = 0; i < (int)p->phase; i++) {
+    /* how long a scene is read, for its large pictures or few words, tells nothing of what follows */
+    for (int i = AG_PHASE_LOAD + 1; i < (int)p->phase; i++) {
         known_seconds += p->phase_seconds[i];
         known_shares += shares[i];
     }
-    if (has_pace) {
+    if (has_pace && p->phase != AG_PHASE_LOAD) {
         known_seconds += took + left;
         known_shares += shares[p->phase];
     }

@@ -70,7 +70,8 @@ static void test_many(void **state)
     assert_true(bound < few + (MOST - 2) * whole_bytes);
 }
 
-/* A scene of little text tells how far it is read while its pictures are. */
+/* A scene of little text tells how far it is read while its pictures are, which does not tell how long the rest takes.
+ */
 static void test_progress(void **state)
 {
     (void)state;
@@ -83,6 +84,8 @@ static void test_progress(void **state)
         at += strlen("\"load\", \"fraction\": ");
         const double fraction = strtod(at, NULL);
         told += fraction > 0.0 && fraction < 1.0;
+        const char *left = strstr(at, "seconds_left"), *end = strchr(at, '\n');
+        assert_true(end && (!left || left > end));
     }
     assert_true(told > 0);
     program_run_reset(&run);
