@@ -170,6 +170,9 @@ static bool sample_from_point(const scene *s, const light *l, vec3 point, vec2 u
     out->shadow_target =
         vec3_add_scaled(at.position, vec3_face_forward(at.geometric_normal, vec3_negate(out->direction)), at.epsilon);
     out->is_delta = shape_is_invisible(lamp); /* then shadow rays alone find it */
+    out->lamp_normal = at.geometric_normal;
+    out->lamp_triangle = at.primitive_index;
+    out->lamp_barycentrics = at.barycentrics;
     return true;
 }
 
@@ -232,12 +235,14 @@ static bool emission_numbers_of(const scene *s, const light *l, vec3 point, vec2
                                 emission_numbers *in_out)
 {
     const shape *lamp = &s->shapes[l->as.area.shape_index];
-    lamp_point picked;
-    if (!sample_lamp(l, lamp, point, u, &picked) || picked.sampling == BY_CONE ||
-        (picked.sampling == BY_AREA && l->as.area.map))
+    float cone;
+    lamp_sampling sampling = sampling_from(l, lamp, point, &cone);
+    if (sampling == BY_CONE || (sampling == BY_AREA && l->as.area.map))
         return false; /* not by the numbers of the position */
-    in_out->position = picked.sampling == BY_SOLID_ANGLES ? shape_sample_numbers(lamp, &picked.at) : u;
-    vec3 n = picked.at.geometric_normal, direction = vec3_negate(towards->direction);
+    in_out->position = sampling == BY_SOLID_ANGLES
+                           ? shape_sample_numbers(lamp, towards->lamp_triangle, towards->lamp_barycentrics)
+                           : u;
+    vec3 n = towards->lamp_normal, direction = vec3_negate(towards->direction);
     if (l->as.area.two_sided) {
         bool is_behind = vec3_dot(n, direction) < 0.0f;
         in_out->part = float_below_one(0.5f * in_out->part + (is_behind ? 0.0f : 0.5f));

@@ -131,6 +131,10 @@ typedef struct light_sample {
     rgb radiance;       /* area, infinite: W/m^2/sr; delta lights: irradiance perpendicular to direction, W/m^2 */
     float pdf_solid_angle; /* 1 for delta lights */
     bool is_delta;         /* no scattered ray can meet it: no MIS */
+    /* of area lights: where on the lamp; of meshes alone the triangle, and as surface_sample has them */
+    vec3 lamp_normal;
+    uint32_t lamp_triangle;
+    vec2 lamp_barycentrics;
 } light_sample;
 
 /* Sets the members that are set by scene_commit, once areas and bounds are known. Errors: AG_ERROR_MEMORY. */

@@ -223,9 +223,9 @@ static vec2 numbers_of_triangle(const mesh *m, uint32_t triangle, vec2 at)
     return (vec2){before + mesh_area_share(m, triangle) * at.x, at.y};
 }
 
-vec2 shape_sample_numbers(const shape *s, const surface_sample *sample)
+vec2 shape_sample_numbers(const shape *s, uint32_t triangle, vec2 barycentrics)
 {
-    vec2 u = numbers_of_triangle(&s->as.mesh, sample->primitive_index, sample_triangle_inverse(sample->barycentrics));
+    vec2 u = numbers_of_triangle(&s->as.mesh, triangle, sample_triangle_inverse(barycentrics));
     return (vec2){float_below_one(fmaxf(u.x, 0.0f)), float_below_one(fmaxf(u.y, 0.0f))};
 }
 

@@ -142,8 +142,8 @@ uint32_t shape_pick_triangle(const shape *s, float *in_out_u);
 surface_sample shape_sample_triangle(const shape *s, uint32_t triangle, vec2 barycentrics);
 /* The whole hit at a sampled point; distance is 0. */
 void shape_sample_surface(const shape *s, uint32_t shape_index, const surface_sample *sample, surface_hit *out_hit);
-/* Returns the numbers in [0, 1) by which shape_sample_area picks that sample of such a mesh. */
-vec2 shape_sample_numbers(const shape *s, const surface_sample *sample);
+/* Returns the numbers in [0, 1) by which shape_sample_area picks that point of a triangle of such a mesh. */
+vec2 shape_sample_numbers(const shape *s, uint32_t triangle, vec2 barycentrics);
 /* Back from a point to the random numbers that pick it. false for shapes that are no mesh. */
 bool shape_sample_inverse(const shape *s, const surface_hit *hit, vec2 *out_u);
 /* The density of shape_sample_area at a point on the shape with that geometric normal. */
