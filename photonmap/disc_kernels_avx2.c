@@ -129,43 +129,79 @@ AVX2 static inline uint32_t find_similar(const photon_query *q, const photon_blo
     return similar;
 }
 
+/* Codes of normals that are similar to a query's for sure. */
+typedef struct near_codes {
+    __m256i middle, most_apart; /* bytes: the halves of the query's own code, and how far from it they may be */
+    uint32_t lanes;             /* 0: none is near enough */
+} near_codes;
+
+/* Where the coordinates of an octahedral code change by 1, the vector changes by the square root of 3 at the most and
+ * is nowhere shorter than 1 over that, so that the direction changes by 3 at the most. A step is 1 / 127, and each
+ * coordinate of the query's normal is half a step from its code. */
+AVX2 static inline near_codes near_codes_of(const photon_query *q)
+{
+    float chord = sqrtf(2.0f - 2.0f * q->min_cos), steps = chord / 3.0f * 127.0f / 1.41422f;
+    int most = (int)(steps - 1.0f); /* half a step is for rounding */
+    return (near_codes){_mm256_set1_epi16((short)direction_encode(q->normal)), _mm256_set1_epi8((char)most),
+                        steps >= 1.0f ? UINT32_MAX : 0};
+}
+
+/* Returns, as bits, those of a block's photons whose normals have such codes. */
+AVX2 static inline uint32_t find_near_codes(const photon_block *b, const near_codes *near)
+{
+    __m256i codes = _mm256_load_si256((const __m256i *)(const void *)b->normal);
+    __m256i apart = _mm256_or_si256(_mm256_subs_epu8(codes, near->middle), _mm256_subs_epu8(near->middle, codes));
+    __m256i is_near = _mm256_cmpeq_epi16(_mm256_subs_epu8(apart, near->most_apart), _mm256_setzero_si256());
+    __m128i lanes = _mm_packs_epi16(_mm256_castsi256_si128(is_near), _mm256_extracti128_si256(is_near, 1));
+    return (uint32_t)_mm_movemask_epi8(lanes) & near->lanes;
+}
+
+/* Squared distances of eight of a block's photons. */
+AVX2 static inline __m256 find_distances(const photon_block *b, uint32_t lane, vec3_8 at)
+{
+    vec3_8 p = {_mm256_load_ps(&b->position[0][lane]), _mm256_load_ps(&b->position[1][lane]),
+                _mm256_load_ps(&b->position[2][lane])};
+    vec3_8 off = sub(p, at);
+    return dot(off, off);
+}
+
+/* The lanes of some bits. */
+AVX2 static inline __m256 lanes_of(uint32_t bits)
+{
+    const __m256i each = _mm256_setr_epi32(1, 2, 4, 8, 16, 32, 64, 128);
+    __m256i its_bit = _mm256_and_si256(_mm256_set1_epi32((int)bits), each);
+    return _mm256_castsi256_ps(_mm256_cmpeq_epi32(its_bit, each));
+}
+
 AVX2 static uint32_t collect(photon_query *q, const uint32_t *leaves, uint32_t leaf_count, photon_found *f)
 {
     const __m256 none = _mm256_set1_ps(NAN), limit = _mm256_set1_ps(f->limit);
-    const __m256i bits = _mm256_setr_epi32(1, 2, 4, 8, 16, 32, 64, 128);
-    vec3_8 at = {_mm256_set1_ps(q->position[0]), _mm256_set1_ps(q->position[1]), _mm256_set1_ps(q->position[2])};
-    uint32_t i = 0, found = f->leaf_count, count = f->count;
-    for (; i < leaf_count && found < f->leaf_capacity && count + PHOTON_BLOCK_LANES <= f->capacity; i++) {
-        const photon_block *b = &q->tree->blocks[leaves[i]];
-        __m256 d[2], is_within[2];
-        uint32_t within = 0;
-        for (uint32_t k = 0; k < 2; k++) {
-            vec3_8 p = {_mm256_load_ps(&b->position[0][WIDTH * k]), _mm256_load_ps(&b->position[1][WIDTH * k]),
-                        _mm256_load_ps(&b->position[2][WIDTH * k])};
-            vec3_8 off = sub(p, at);
-            d[k] = dot(off, off);
-            is_within[k] = _mm256_cmp_ps(d[k], limit, _CMP_LE_OQ);
-            within |= (uint32_t)_mm256_movemask_ps(is_within[k]) << WIDTH * k;
-        }
+    const near_codes near = near_codes_of(q);
+    const vec3_8 at = {_mm256_set1_ps(q->position[0]), _mm256_set1_ps(q->position[1]), _mm256_set1_ps(q->position[2])};
+    const photon_block *blocks = q->tree->blocks;
+    const uint32_t leaf_capacity = f->leaf_capacity, most = f->capacity - PHOTON_BLOCK_LANES;
+    uint32_t i = 0, found = f->leaf_count, count = f->count, *to_leaves = f->leaves;
+    float *to = f->distances_squared + (size_t)found * PHOTON_BLOCK_LANES;
+    for (; i < leaf_count && found < leaf_capacity && count <= most; i++) {
+        const photon_block *b = &blocks[leaves[i]];
+        __m256 first = find_distances(b, 0, at), second = find_distances(b, WIDTH, at);
+        __m256 in_first = _mm256_cmp_ps(first, limit, _CMP_LE_OQ), in_second = _mm256_cmp_ps(second, limit, _CMP_LE_OQ);
+        uint32_t within = (uint32_t)_mm256_movemask_ps(in_first) | (uint32_t)_mm256_movemask_ps(in_second) << WIDTH;
         if (!within)
             continue;
-        uint32_t similar = q->similar_code == PHOTON_QUERY_NO_CODE
-                               ? 0
-                               : within & photon_block_with_normal(b, (uint16_t)q->similar_code);
-        if (within & ~similar) {
+        uint32_t similar = within & find_near_codes(b, &near);
+        if (similar != within) {
+            const __m256 d[2] = {first, second};
             similar = within & find_similar(q, b, d, limit, &f->other);
             if (!similar)
                 continue;
-            q->similar_code = b->normal[__builtin_ctz(similar)];
-            for (uint32_t k = 0; similar != within && k < 2; k++) {
-                __m256i its_bit = _mm256_and_si256(_mm256_set1_epi32((int)(similar >> WIDTH * k)), bits);
-                is_within[k] = _mm256_castsi256_ps(_mm256_cmpeq_epi32(its_bit, bits));
-            }
+            in_first = lanes_of(similar);
+            in_second = lanes_of(similar >> WIDTH);
         }
-        for (uint32_t k = 0; k < 2; k++)
-            _mm256_store_ps(f->distances_squared + (size_t)found * PHOTON_BLOCK_LANES + WIDTH * k,
-                            _mm256_blendv_ps(none, d[k], is_within[k]));
-        f->leaves[found++] = leaves[i];
+        _mm256_store_ps(to, _mm256_blendv_ps(none, first, in_first));
+        _mm256_store_ps(to + WIDTH, _mm256_blendv_ps(none, second, in_second));
+        to += PHOTON_BLOCK_LANES;
+        to_leaves[found++] = leaves[i];
         count += (uint32_t)__builtin_popcount(similar);
     }
     f->leaf_count = found;
@@ -182,32 +218,43 @@ AVX2 static inline uint32_t sum_of_32(__m256i v)
 
 AVX2 static void count_within(const photon_found *f, const float most[DISC_COUNTS], uint32_t out_counts[DISC_COUNTS])
 {
-    __m256 limits[DISC_COUNTS];
-    __m256i counts[DISC_COUNTS]; /* less so many */
-    for (int k = 0; k < DISC_COUNTS; k++) {
-        limits[k] = _mm256_set1_ps(most[k]);
-        counts[k] = _mm256_setzero_si256();
+    _Static_assert(DISC_COUNTS == 3 && PHOTON_BLOCK_LANES == 2 * WIDTH, "what stays in registers");
+    const __m256 a = _mm256_set1_ps(most[0]), b = _mm256_set1_ps(most[1]), c = _mm256_set1_ps(most[2]);
+    __m256i in_a = _mm256_setzero_si256(), in_b = in_a, in_c = in_a; /* less so many */
+    const float *d = f->distances_squared, *end = d + (size_t)f->leaf_count * PHOTON_BLOCK_LANES;
+    for (; d < end; d += PHOTON_BLOCK_LANES) {
+        __m256 first = _mm256_load_ps(d), second = _mm256_load_ps(d + WIDTH);
+        in_a = _mm256_add_epi32(in_a, _mm256_castps_si256(_mm256_cmp_ps(first, a, _CMP_LE_OQ)));
+        in_b = _mm256_add_epi32(in_b, _mm256_castps_si256(_mm256_cmp_ps(first, b, _CMP_LE_OQ)));
+        in_c = _mm256_add_epi32(in_c, _mm256_castps_si256(_mm256_cmp_ps(first, c, _CMP_LE_OQ)));
+        in_a = _mm256_add_epi32(in_a, _mm256_castps_si256(_mm256_cmp_ps(second, a, _CMP_LE_OQ)));
+        in_b = _mm256_add_epi32(in_b, _mm256_castps_si256(_mm256_cmp_ps(second, b, _CMP_LE_OQ)));
+        in_c = _mm256_add_epi32(in_c, _mm256_castps_si256(_mm256_cmp_ps(second, c, _CMP_LE_OQ)));
     }
-    for (uint32_t i = 0; i < f->leaf_count * PHOTON_BLOCK_LANES; i += WIDTH) {
-        __m256 d = _mm256_load_ps(f->distances_squared + i);
-        for (int k = 0; k < DISC_COUNTS; k++)
-            counts[k] = _mm256_add_epi32(counts[k], _mm256_castps_si256(_mm256_cmp_ps(d, limits[k], _CMP_LE_OQ)));
-    }
-    for (int k = 0; k < DISC_COUNTS; k++)
-        out_counts[k] = 0 - sum_of_32(counts[k]);
+    out_counts[0] = 0 - sum_of_32(in_a);
+    out_counts[1] = 0 - sum_of_32(in_b);
+    out_counts[2] = 0 - sum_of_32(in_c);
+}
+
+/* Returns, as bits, which of eight squared distances are between two others. */
+AVX2 static inline uint32_t find_between(const float *d, __m256 least, __m256 most)
+{
+    __m256 eight = _mm256_load_ps(d);
+    return (uint32_t)_mm256_movemask_ps(
+        _mm256_and_ps(_mm256_cmp_ps(eight, least, _CMP_GT_OQ), _mm256_cmp_ps(eight, most, _CMP_LE_OQ)));
 }
 
 AVX2 static uint32_t list_between(const photon_found *f, float low, float high, photon_neighbor *out_neighbors)
 {
     const __m256 least = _mm256_set1_ps(low), most = _mm256_set1_ps(high);
+    const uint32_t leaves = f->leaf_count;
     uint32_t count = 0;
-    for (uint32_t i = 0; i < f->leaf_count * PHOTON_BLOCK_LANES; i += WIDTH) {
-        __m256 d = _mm256_load_ps(f->distances_squared + i);
-        uint32_t between = (uint32_t)_mm256_movemask_ps(
-            _mm256_and_ps(_mm256_cmp_ps(d, least, _CMP_GT_OQ), _mm256_cmp_ps(d, most, _CMP_LE_OQ)));
+    for (uint32_t leaf = 0; leaf < leaves; leaf++) {
+        const float *d = f->distances_squared + (size_t)leaf * PHOTON_BLOCK_LANES;
+        uint32_t between = find_between(d, least, most) | find_between(d + WIDTH, least, most) << WIDTH;
         for (; between; between &= between - 1) {
-            uint32_t slot = i + (uint32_t)__builtin_ctz(between);
-            out_neighbors[count++] = photon_neighbor_make(f->distances_squared[slot], photon_found_index(f, slot));
+            uint32_t lane = (uint32_t)__builtin_ctz(between);
+            out_neighbors[count++] = photon_neighbor_make(d[lane], f->leaves[leaf] * PHOTON_BLOCK_LANES + lane);
         }
     }
     return count;
@@ -273,24 +320,30 @@ AVX2 __attribute__((noinline)) static void add_far(__m256i code, __m256i below, 
     }
 }
 
+/* Returns one byte of each of eight words, 0 the lowest. */
+AVX2 static inline __m256i byte_of(__m256i words, int byte)
+{
+    const __m256i first = _mm256_set1_epi32((int)0x80808000), word = _mm256_setr_epi32(0, 4, 8, 12, 0, 4, 8, 12);
+    return _mm256_shuffle_epi8(words, _mm256_add_epi32(_mm256_add_epi32(first, word), _mm256_set1_epi32(byte)));
+}
+
 /* photon_disc_add of those of eight photons that count. */
 AVX2 static inline void sums_add(near_sums *s, const photon_disc *disc, bool has_offsets, __m256 scale,
                                  const uint32_t *flux, vec3_8 offset, __m256i counts, photon_disc_sums *sums)
 {
-    const __m256i byte = _mm256_set1_epi32(255), most = _mm256_set1_epi32(disc->flux_exponent_max + 128),
-                  octaves = _mm256_set1_epi32(NEAR_OCTAVES);
+    const __m256i byte = _mm256_set1_epi32(255);
     __m256i code = _mm256_and_si256(_mm256_load_si256((const __m256i *)(const void *)flux), counts);
-    __m256i below = _mm256_sub_epi32(most, _mm256_srli_epi32(code, 24));
-    __m256i is_far = _mm256_cmpgt_epi32(below, octaves);
-    if (__builtin_expect(_mm256_testz_si256(is_far, counts), 1)) {
-        __m256i shift = _mm256_sub_epi32(octaves, below); /* of those that do not count: beyond 32 bits, which is 0 */
-        __m256i red = _mm256_and_si256(_mm256_srli_epi32(code, 16), byte),
-                green = _mm256_and_si256(_mm256_srli_epi32(code, 8), byte), blue = _mm256_and_si256(code, byte);
+    /* by how many octaves a flux is stronger than the faintest of the near ones; of those that do not count so far
+     * below them that nothing is left */
+    __m256i shift =
+        _mm256_sub_epi32(_mm256_srli_epi32(code, 24), _mm256_set1_epi32(disc->flux_exponent_max + 128 - NEAR_OCTAVES));
+    if (__builtin_expect(_mm256_testz_ps(_mm256_castsi256_ps(shift), _mm256_castsi256_ps(counts)), 1)) {
+        __m256i red = byte_of(code, 2), green = byte_of(code, 1), blue = _mm256_and_si256(code, byte);
         s->red = _mm256_add_epi32(s->red, _mm256_sllv_epi32(red, shift));
         s->green = _mm256_add_epi32(s->green, _mm256_sllv_epi32(green, shift));
         s->blue = _mm256_add_epi32(s->blue, _mm256_sllv_epi32(blue, shift));
     } else {
-        add_far(code, below, sums);
+        add_far(code, _mm256_sub_epi32(_mm256_set1_epi32(NEAR_OCTAVES), shift), sums);
     }
     if (has_offsets) {
         s->x = _mm256_add_epi32(s->x, _mm256_and_si256(_mm256_cvttps_epi32(_mm256_mul_ps(offset.x, scale)), counts));

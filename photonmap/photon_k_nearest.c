@@ -120,8 +120,9 @@ void disc_kernels_search(const disc_kernels *kernels, photon_found *found, const
         collect(kernels, &q, leaf, wanted, found);
         if (found->count == wanted || limit >= largest)
             break;
-        /* too few: by how many tells how much farther to look */
-        limit = fminf(limit * fminf(4.0f, 1.3f * (float)wanted / (float)(found->count + 1)), largest);
+        /* too few: by how many tells how much farther to look, the better the more there are */
+        float margin = found->count > wanted / 2 ? 1.15f : 1.3f;
+        limit = fminf(limit * fminf(4.0f, margin * (float)wanted / (float)(found->count + 1)), largest);
     }
     if (found->other > found->limit)
         found->other = INFINITY; /* what is known beyond the limit depends on where the search began */

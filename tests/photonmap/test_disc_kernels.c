@@ -159,6 +159,74 @@ static void sums_are_the_same(void **state)
     test_run_reset(&r);
 }
 
+/* A direction near a photon's normal, mostly with the same code, or any. */
+static vec3 pick_normal(rng *random, const photon_tree *tree, uint32_t index)
+{
+    vec3 any = random_direction(random), near = direction_decode(photon_block_normal(tree->blocks, index));
+    return rng_next(random) % 4 ? vec3_normalize(vec3_add_scaled(near, any, 0.01f * rng_float(random))) : any;
+}
+
+/* All kernels collect the same photons, whichever way they face, for any limit of the angle: photons all over a sphere
+ * and within it, whose normals are any. */
+static void the_same_photons_are_collected(void **state)
+{
+    (void)state;
+    enum { QUERIES = 8000 / FEWER, READ = 40 };
+    static const float MIN_COS[] = {0.5f, 0.9f, 0.0f, 0.99f, 0.999f, 0.99999f, 0.25f, 0.75f};
+    const disc_kernels *kernels[] = {&disc_kernels_plain, disc_kernels_best()};
+    test_run r;
+    test_run_init(&r, 1);
+    rng random = test_random(7);
+    photon *p = photon_records_create(COUNT);
+    assert_non_null(p);
+    for (uint32_t i = 0; i < COUNT; i++) {
+        vec3 at = random_direction(&random), normal = i % 5 ? at : random_direction(&random);
+        p[i] = (photon){.position = {at.x, at.y, at.z}, .normal = direction_encode(normal)};
+    }
+    photon_tree tree;
+    assert_int_equal(photon_tree_build(&r.run, p, COUNT, 0.0, 1.0, &tree), AG_OK);
+    photon_neighbor *scratch[2];
+    uint64_t collected = 0, refused = 0;
+    for (int k = 0; k < 2; k++) {
+        scratch[k] = malloc(photon_neighbors_capacity(READ * PHOTON_BLOCK_LANES) * sizeof **scratch);
+        assert_non_null(scratch[k]);
+    }
+    for (uint32_t i = 0; i < QUERIES; i++) {
+        uint32_t index = (uint32_t)(rng_next(&random) % tree.count);
+        vec3 normal = pick_normal(&random, &tree, index), at = vec3_add_scaled(normal, random_direction(&random), 0.1f);
+        float limit = 4.0f * rng_float(&random) * rng_float(&random);
+        uint32_t leaves[READ], blocks = (uint32_t)photon_block_count(tree.count), read[2];
+        for (uint32_t k = 0; k < READ; k++)
+            leaves[k] = (uint32_t)(rng_next(&random) % blocks);
+        leaves[0] = index / PHOTON_BLOCK_LANES;
+        photon_found found[2];
+        for (int k = 0; k < 2; k++) {
+            photon_query q;
+            photon_query_init(&q, &tree, at, normal, MIN_COS[i % 8]);
+            photon_found_init(&found[k], &tree, READ * PHOTON_BLOCK_LANES, scratch[k]);
+            found[k].limit = limit;
+            read[k] = kernels[k]->collect(&q, leaves, READ, &found[k]);
+        }
+        assert_int_equal(read[0], READ);
+        assert_int_equal(read[1], READ);
+        assert_int_equal(found[0].count, found[1].count);
+        assert_int_equal(found[0].leaf_count, found[1].leaf_count);
+        assert_true(found[0].other == found[1].other);
+        assert_memory_equal(found[0].leaves, found[1].leaves, found[0].leaf_count * sizeof *found->leaves);
+        for (uint32_t k = 0; k < found[0].leaf_count * PHOTON_BLOCK_LANES; k++) {
+            float d[2] = {found[0].distances_squared[k], found[1].distances_squared[k]};
+            assert_true(isnan(d[0]) ? isnan(d[1]) : d[0] == d[1]);
+            *(isnan(d[0]) ? &refused : &collected) += 1;
+        }
+    }
+    assert_true(collected > QUERIES && refused > QUERIES);
+    for (int k = 0; k < 2; k++)
+        free(scratch[k]);
+    photon_tree_reset(&tree);
+    free(p);
+    test_run_reset(&r);
+}
+
 static int by_value(const void *a, const void *b)
 {
     photon_neighbor x = *(const photon_neighbor *)a, y = *(const photon_neighbor *)b;
@@ -347,6 +415,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(sums_are_the_same),
+        cmocka_unit_test(the_same_photons_are_collected),
         cmocka_unit_test(the_nearest_are_kept),
         cmocka_unit_test(leaves_of_subtrees_are_found),
         cmocka_unit_test(nothing_behind_the_last_leaf_is_found),
