@@ -7,8 +7,11 @@
 
 #include <math.h>
 
-/* One of this many photons of the global map is darker than the dim irradiance. */
-enum { DIM_ONE_IN = 20 };
+/* One of this many photons of the global map is darker than the dim irradiance. On the largest disc, k photons are as
+ * bright as one part in DIMMER of that: where they are sparse, a disc on which they were as bright as all of it, and of
+ * the mean flux, was seen as a spot. Squared error of 500,000 caustic photons against 8,000,000, over that of such
+ * discs: a stair under a skylight 0.70, a kitchen 0.41, a glass pot 0.62, a pool 0.63, glass beside a lamp 0.90. */
+enum { DIM_ONE_IN = 20, DIMMER = 4 };
 
 /* [W/m^2] of the channel that is largest. */
 static float irradiance_at(const photon_map *global, vec3 position, vec3 normal, photon_neighbor *scratch)
@@ -25,11 +28,15 @@ ag_status caustic_radius_find(const photon_map *global, const photon_set *causti
     uint32_t count;
     AG_TRY(photon_survey(global, irradiance_at, found, &count));
     const float dim = found[count / DIM_ONE_IN];
-    double flux = 0.0;
-    for (uint32_t i = 0; i < caustic->count; i++)
-        flux += (double)rgb_max(flux_decode(caustic->photons[i].flux));
-    double each = flux / ((double)caustic->count * (double)caustic->emitted_paths);
-    float radius = (float)sqrt((double)global->nearest * each / ((double)AG_PI * (double)dim));
+    double flux = 0.0, squares = 0.0;
+    for (uint32_t i = 0; i < caustic->count; i++) {
+        double stored = (double)rgb_max(flux_decode(caustic->photons[i].flux));
+        flux += stored;
+        squares += stored * stored;
+    }
+    /* the mean by flux: that of the photons which bring most of the light, and make the spots */
+    double each = flux > 0.0 ? squares / (flux * (double)caustic->emitted_paths) : 0.0;
+    float radius = (float)sqrt((double)global->nearest * each * (double)DIMMER / ((double)AG_PI * (double)dim));
     if (radius > 0.0f && radius < *out_radius)
         *out_radius = radius;
     return AG_OK;

@@ -1,6 +1,6 @@
 /* test_caustic_radius.c: how far caustic estimates reach, in an even field of light whose irradiance is known: the
- * radius of the disc on which k caustic photons are as bright; and the flux of a spot of light, which no estimate
- * beside it adds to. Threads: one. */
+ * radius of the disc on which k caustic photons are as bright as a part of it; and the flux of a spot of light, which
+ * no estimate beside it adds to. Threads: one. */
 #include "caustic_radius.h"
 #include "fixtures/photon_field.h"
 
@@ -9,8 +9,9 @@
 enum { PHOTONS = 20000 / FEWER, NEAREST = 50, SPOT = 300, SPOT_POINTS = 60000 };
 static const float SPOT_ANGLE = 0.05f, AROUND = 0.6f;
 
-/* A spot of SPOT photons around the pole of the unit sphere, each of so many W. */
-static photon_set spot_photons(float power_each)
+/* A spot of SPOT photons around the pole of the unit sphere, each of so many W, and each second one of `ratio` times
+ * that. */
+static photon_set uneven_spot_photons(float power_each, float ratio)
 {
     photon_set set = {.emitted_paths = SPOT};
     set.photons = photon_records_create(SPOT);
@@ -20,10 +21,13 @@ static photon_set spot_photons(float power_each)
         float u = rng_float(&random), v = rng_float(&random), z = 1.0f - u * (1.0f - cosf(SPOT_ANGLE));
         float r = sqrtf(1.0f - z * z), around = 2.0f * AG_PI * v;
         vec3 p = {r * cosf(around), r * sinf(around), z};
-        field_add(&set, p, vec3_negate(p), flux_encode(rgb_gray(power_each * (float)SPOT), 32));
+        field_add(&set, p, vec3_negate(p),
+                  flux_encode(rgb_gray((i % 2 ? ratio : 1.0f) * power_each * (float)SPOT), 32));
     }
     return set;
 }
+
+static photon_set spot_photons(float power_each) { return uneven_spot_photons(power_each, 1.0f); }
 
 typedef struct radius_case {
     test_run run;
@@ -43,27 +47,31 @@ static void end(radius_case *c)
     test_run_reset(&c->run);
 }
 
-static float radius_of(const radius_case *c, float power_each)
+static float radius_of_uneven(const radius_case *c, float power_each, float ratio)
 {
-    photon_set set = spot_photons(power_each);
+    photon_set set = uneven_spot_photons(power_each, ratio);
     float radius = -1.0f;
     assert_int_equal(caustic_radius_find(&c->global, &set, &radius), AG_OK);
     photon_set_reset(&set);
     return radius;
 }
 
-/* pi R^2 E = k photons. The dim parts of an even field are those that chance makes so: one in twenty estimates of 50
- * photons is below 0.77 of the mean. */
+static float radius_of(const radius_case *c, float power_each) { return radius_of_uneven(c, power_each, 1.0f); }
+
+/* pi R^2 E / 4 = k photons, of the mean power of a watt's photons. The dim parts of an even field are those that chance
+ * makes so: one in twenty estimates of 50 photons is below 0.77 of the mean. */
 static void radius_by_power(void **state)
 {
     (void)state;
     radius_case c;
     begin(&c, PHOTONS);
-    double irradiance = 10.0 / (4.0 * PI), power = 1e-6, even = sqrt(NEAREST * power / (PI * irradiance));
+    double irradiance = 10.0 / (4.0 * PI), power = 1e-6, even = 2.0 * sqrt(NEAREST * power / (PI * irradiance));
     double radius = (double)radius_of(&c, (float)power);
     print_message("radius %g, %g by the mean\n", radius, even);
     assert_true(radius > even && radius < even * 1.25);
     assert_float_equal(radius_of(&c, 4.0f * (float)power), (float)(2.0 * radius), (float)(0.01 * radius));
+    /* of each watt a quarter comes by photons of that power, three quarters by those of three times as much */
+    assert_float_equal(radius_of_uneven(&c, (float)power, 3.0f), (float)(sqrt(2.5) * radius), (float)(0.01 * radius));
     assert_true(radius_of(&c, 1e3f) == c.global.max_radius);
     end(&c);
 }
