@@ -26,7 +26,8 @@ if(NOT CMAKE_SCRIPT_MODE_FILE)
       endif()
     endforeach()
     foreach(folder ${ARGN})
-      list(APPEND folders ${CMAKE_CURRENT_SOURCE_DIR}/${folder})
+      cmake_path(ABSOLUTE_PATH folder BASE_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR} NORMALIZE)
+      list(APPEND folders ${folder})
     endforeach()
     list(REMOVE_DUPLICATES folders)
     foreach(folder ${folders})
@@ -75,7 +76,8 @@ list(TRANSFORM roots PREPEND ${ROOT}/)
 # Surfaces and textures know points (surface.h) and rays (ray.h), not the tree nor how rays are cast. Below them, each
 # folder of ag_image knows those before it: math and text, color, image. Materials know nothing of lights, nor the other
 # way round; what casts rays knows no lights. A format's reader knows no other's, but that meshes of pbrt may be PLY
-# files. What finds the light knows nothing of pictures' files.
+# files. What finds the light knows nothing of pictures' files. The programs take name_hash.h, status.h and utf8.h from
+# threads, which need no more of the library than its public headers.
 set(cut
   "^scene/(shape|texture|material|image|color|text|math)/.*->scene/rays/(bvh|bvh_embree|rays|transmittance|embree_api)\\.h$"
   "^scene/(image|color|text|math)/.*->scene/(scene|surface|shape/.*|material/.*|light/.*|texture/.*)\\.h$"
@@ -93,7 +95,7 @@ set(cut
   "^renderer/film/.*->renderer/(integrator|output|cli)/"
   "^renderer/integrator/.*->renderer/(output|cli)/"
   "^renderer/output/.*->renderer/cli/"
-  "^renderer/cli/.*->threads/([a-rtv-z]|s[^t]|st[^a]|u[^t])"
+  "^renderer/cli/.*->threads/([a-hj-mo-rtv-z]|i[^n]|n[^a]|s[^t]|st[^a]|u[^t])"
   "^scene/(surface|rays/ray|rays/rays)\\.h->scene/scene\\.h$"
   "^scene/(shape|texture)/[a-z_]+\\.h->scene/scene\\.h$"
   "^scene/scene\\.h->scene/rays/(bvh|rays|transmittance)\\.h$")
