@@ -1,6 +1,7 @@
 /* estimate_fingerprint.c: see estimate_fingerprint.h. */
 #include "estimate_fingerprint.h"
 
+#include "caustic_radius.h"
 #include "math/rng.h"
 #include "status.h"
 
@@ -12,6 +13,9 @@
  * corners, ledges, floors close above each other, surfaces that end, and photons that stand denser or are brighter
  * beyond a line. */
 enum { DISCS = 64, PHOTONS = 4096, PHOTONS_OF_FLOOR = 1536, ESTIMATE_EVERY = 8 };
+/* Caustic photons of several fluxes, so faint that no other bound decides how far their estimates reach. */
+enum { CAUSTIC_PHOTONS = 16 };
+static const float CAUSTIC_FLUX = 1e-4f;
 /* Estimates of few photons and of many go by other bounds. */
 static const uint32_t NEAREST[] = {20, 96};
 
@@ -115,20 +119,34 @@ static void add_estimates(const photon_map *map, irradiance_estimate_fn *find, p
     }
 }
 
+/* How far caustic estimates reach, which a map file keeps. */
+static ag_status add_caustic_radius(const photon_map *global, hash128 *in_out_hash)
+{
+    photon photons[CAUSTIC_PHOTONS] = {0};
+    photon_set caustic = {.photons = photons, .count = CAUSTIC_PHOTONS, .emitted_paths = PHOTONS};
+    float radius;
+    for (uint32_t i = 0; i < CAUSTIC_PHOTONS; i++)
+        photons[i].flux = flux_encode(rgb_gray(CAUSTIC_FLUX * (float)(i + 1)), i);
+    AG_TRY(caustic_radius_find(global, &caustic, &radius));
+    HASH128_ADD(in_out_hash, radius);
+    return AG_OK;
+}
+
 static ag_status add_map(run_context *run, const scene *surfaces, const built_in_disc discs[DISCS], uint32_t nearest,
                          irradiance_estimate_fn *find, hash128 *in_out_hash)
 {
     photon_map map;
     AG_TRY(make_map(run, surfaces, discs, nearest, &map));
     photon_neighbor *scratch = malloc(photon_map_scratch_count(&map) * sizeof *scratch);
-    if (scratch) {
+    ag_status status = scratch ? add_caustic_radius(&map, in_out_hash) : AG_ERROR_MEMORY;
+    if (status == AG_OK) {
         add_estimates(&map, find, scratch, in_out_hash);
         map.surfaces = NULL;
         add_estimates(&map, find, scratch, in_out_hash);
     }
     photon_map_reset(&map);
     free(scratch);
-    return scratch ? AG_OK : AG_ERROR_MEMORY;
+    return status;
 }
 
 ag_status estimate_fingerprint(const run_context *run, const char *isa, irradiance_estimate_fn *find, hash128 *out_hash)
