@@ -64,10 +64,12 @@ static void close_file(const image_module *module, open_levels *open)
     open->file = NULL;
 }
 
-/* Opens the file as of input_file_open. out_open->file is NULL where it cannot be opened, holds no levels, or on
- * failure; run: as there. *out_file says which file it is. Errors: those of the module. */
-static ag_status open_file(const run_context *run, const image_module *module, const char *path, open_levels *out_open,
-                           image_levels_header *out_header, struct stat *out_file)
+/* Opens the file as of input_file_open. wanted: which file it is to be, else nothing of it is read; NULL: any.
+ * out_open->file is NULL where it is another, cannot be opened, holds no levels, or on failure; run: as there.
+ * *out_file says which file it is. Errors: those of the module. */
+static ag_status open_file(const run_context *run, const image_module *module, const char *path,
+                           const struct stat *wanted, open_levels *out_open, image_levels_header *out_header,
+                           struct stat *out_file)
 {
     char message[1024], text[INPUT_FILE_OPENED_SIZE];
     const int descriptor = input_file_open(run, path, message, sizeof message);
@@ -76,7 +78,8 @@ static ag_status open_file(const run_context *run, const image_module *module, c
         return AG_OK;
     const char *opened = input_file_opened_path(descriptor, path, text);
     ag_status status = AG_OK;
-    if (fstat(descriptor, out_file) == 0 && !png_file_chunks_wrong(opened))
+    if (fstat(descriptor, out_file) == 0 && (!wanted || is_same_file(wanted, out_file)) &&
+        !png_file_chunks_wrong(opened))
         status = module->open_levels(opened, path, &out_open->file, out_header, message, sizeof message);
     if (!out_open->file)
         close(descriptor);
@@ -91,7 +94,7 @@ ag_status image_levels_open(const run_context *run, const char *path, image_leve
     image_levels_header header;
     *out_levels = NULL;
     const image_module *module = image_module_get(message, sizeof message);
-    const ag_status status = module ? open_file(run, module, path, &open, &header, &file) : AG_OK;
+    const ag_status status = module ? open_file(run, module, path, NULL, &open, &header, &file) : AG_OK;
     if (!open.file)
         return status == AG_ERROR_MEMORY ? status : AG_OK;
     image_levels *l = calloc(1, sizeof *l);
@@ -144,9 +147,8 @@ static ag_status open_again(const image_levels *l, open_levels *out_open)
 {
     struct stat file;
     image_levels_header header;
-    AG_TRY(open_file(NULL, l->module, l->path, out_open, &header, &file));
-    /* it may have changed since it was asked after */
-    if (out_open->file && !(is_same_file(&l->file, &file) && is_same_header(&l->header, &header)))
+    AG_TRY(open_file(NULL, l->module, l->path, &l->file, out_open, &header, &file));
+    if (out_open->file && !is_same_header(&l->header, &header)) /* it has changed since it was asked after */
         close_file(l->module, out_open);
     return out_open->file ? AG_OK : AG_ERROR_INPUT;
 }

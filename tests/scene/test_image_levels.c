@@ -1,7 +1,7 @@
 /* test_image_levels.c: tiles are read into memory that was measured when the file was opened: a file that says other
- * sizes by the time it is read is an error. Few files stay open. And a picture that is made of a file's own levels is
- * fingerprinted by its bytes and by what they are decoded with. Flow: tests of scene/image/image_levels.c,
- * scene/texture/texture_image.c. Threads: one. */
+ * sizes by the time it is read is an error, and another file in its place is not looked into. Few files stay open. And
+ * a picture that is made of a file's own levels is fingerprinted by its bytes and by what they are decoded with. Flow:
+ * tests of scene/image/image_levels.c, scene/texture/texture_image.c. Threads: one. */
 #define _GNU_SOURCE
 #include "fixtures/texture_fixture.h"
 #include "fixtures/tiled_tiff.h"
@@ -10,6 +10,7 @@
 
 #include <dirent.h>
 #include <fcntl.h>
+#include <sys/inotify.h>
 
 enum {
     MANY = 129,
@@ -103,6 +104,42 @@ static void a_file_that_was_exchanged_is_an_error(void **state)
         image_levels_close(levels[k]);
 }
 
+/* How many times a watched file was read since the last call. */
+static int count_reads(int watch)
+{
+    _Alignas(struct inotify_event) char events[4096];
+    const ssize_t length = read(watch, events, sizeof events);
+    return length > 0 ? (int)((size_t)length / sizeof(struct inotify_event)) : 0;
+}
+
+/* Whether the scene may read a file was asked of the first one only, so nothing of another is read. */
+static void another_file_in_its_place_is_not_read(void **state)
+{
+    (void)state;
+    static unsigned char pixels[TILE_BYTES];
+    image_levels *levels[MANY];
+    const int watch = inotify_init1(IN_NONBLOCK | IN_CLOEXEC);
+    if (watch < 0)
+        skip();
+    tiff_write_levels("a.tx", 256, 3, number);
+    tiff_write_levels("b.tx", 256, 3, number);
+    for (int k = 0; k < MANY; k++) {
+        assert_int_equal(image_levels_open(NULL, in_folder("a.tx"), &levels[k]), AG_OK);
+        assert_non_null(levels[k]);
+    }
+    image_levels *last = levels[MANY - 1];
+    assert_true(inotify_add_watch(watch, in_folder("a.tx"), IN_ACCESS) >= 0);
+    assert_true(inotify_add_watch(watch, in_folder("b.tx"), IN_ACCESS) >= 0);
+    assert_int_equal(image_levels_read(last, 0, 0, 0, 0, 3, true, pixels), AG_OK);
+    assert_true(count_reads(watch) > 0);
+    assert_int_equal(rename(in_folder("b.tx"), in_folder("a.tx")), 0);
+    assert_int_equal(image_levels_read(last, 0, 0, 0, 0, 3, true, pixels), AG_ERROR_INPUT);
+    assert_int_equal(count_reads(watch), 0);
+    for (int k = 0; k < MANY; k++)
+        image_levels_close(levels[k]);
+    close(watch);
+}
+
 static hash128 content_of(const char *encoding)
 {
     char world[256];
@@ -135,6 +172,7 @@ int main(void)
         TEST_IN_FOLDER(tiles_are_of_the_header),
         TEST_IN_FOLDER(few_files_stay_open),
         TEST_IN_FOLDER(a_file_that_was_exchanged_is_an_error),
+        TEST_IN_FOLDER(another_file_in_its_place_is_not_read),
         TEST_IN_FOLDER(encodings_are_in_the_fingerprint),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
