@@ -30,9 +30,10 @@ static void drop_one(shard *of)
 static ag_status read_packed(const texture_tiles *t, const texture_tile *tile, unsigned char *out_pixels)
 {
     const size_t scratch_bytes = tile_scratch_bytes(format_of(t));
-    unsigned char *memory = malloc(scratch_bytes + tile_bytes_of(t)), *packed = memory + scratch_bytes;
+    unsigned char *memory = malloc(scratch_bytes + tile_bytes_of(t));
     if (!memory)
         return AG_ERROR_MEMORY;
+    unsigned char *packed = memory + scratch_bytes;
     ag_status status = AG_ERROR_SYSTEM;
     if (tile_file_read(t->file->descriptor, packed, tile->file_bytes, tile->file_offset) &&
         (!t->file->is_checked || tile_check(packed, tile->file_bytes) == tile->check))
