@@ -58,14 +58,14 @@ static float radius_of_uneven(const radius_case *c, float power_each, float rati
 
 static float radius_of(const radius_case *c, float power_each) { return radius_of_uneven(c, power_each, 1.0f); }
 
-/* pi R^2 E / 4 = k photons, of the mean power of a watt's photons. The dim parts of an even field are those that chance
+/* pi R^2 E / 2 = k photons, of the mean power of a watt's photons. The dim parts of an even field are those that chance
  * makes so: one in twenty estimates of 50 photons is below 0.77 of the mean. */
 static void radius_by_power(void **state)
 {
     (void)state;
     radius_case c;
     begin(&c, PHOTONS);
-    double irradiance = 10.0 / (4.0 * PI), power = 1e-6, even = 2.0 * sqrt(NEAREST * power / (PI * irradiance));
+    double irradiance = 10.0 / (4.0 * PI), power = 1e-6, even = sqrt(2.0 * NEAREST * power / (PI * irradiance));
     double radius = (double)radius_of(&c, (float)power);
     print_message("radius %g, %g by the mean\n", radius, even);
     assert_true(radius > even && radius < even * 1.25);
