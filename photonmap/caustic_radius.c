@@ -35,7 +35,7 @@ ag_status caustic_radius_find(const photon_map *global, const photon_set *causti
         flux += stored;
         squares += stored * stored;
     }
-    /* the mean by flux: that of the photons which bring most of the light, and make the spots */
+    /* the mean weighted by flux: the strongest photons bring most of the light, and make the spots */
     double each = flux > 0.0 ? squares / (flux * (double)caustic->emitted_paths) : 0.0;
     float radius = (float)sqrt((double)global->nearest * each * (double)DIMMER / ((double)AG_PI * (double)dim));
     if (radius > 0.0f && radius < *out_radius)

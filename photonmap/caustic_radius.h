@@ -1,7 +1,7 @@
 /* caustic_radius.h: the largest radius of caustic estimates. Caustic photons are dense within caustics, and each has
  * little flux. Between caustics they are metres apart, and a disc of k photons would carry their light to points that
- * it does not reach. The largest disc is therefore one on which k photons are half as bright as the dim
- * parts of the scene, where the variance of fewer photons does not show beside the other light.
+ * it does not reach. The largest disc is therefore one on which k photons, each of the mean flux weighted by flux, are
+ * half as bright as the dim parts of the scene: the variance of fewer photons does not show beside the other light.
  * Rests on: Jensen, "Realistic Image Synthesis Using Photon Mapping", 2001, 7.2 (bias and noise of the disc's size).
  * Flow: photon_map of all light, photons of caustics -> [here] -> photon_map of caustics. Threads: pure. */
 #ifndef AFTERGLOW_CAUSTIC_RADIUS_H

@@ -165,7 +165,7 @@ AVX2 static inline __m256 find_distances(const photon_block *b, uint32_t lane, v
     return dot(off, off);
 }
 
-/* The lanes of some bits. */
+/* Returns a mask of eight lanes: those whose bits are set, from the lowest on. */
 AVX2 static inline __m256 lanes_of(uint32_t bits)
 {
     const __m256i each = _mm256_setr_epi32(1, 2, 4, 8, 16, 32, 64, 128);

@@ -119,7 +119,7 @@ static void add_estimates(const photon_map *map, irradiance_estimate_fn *find, p
     }
 }
 
-/* How far caustic estimates reach, which a map file keeps. */
+/* Adds the largest radius of caustic estimates, which a map file keeps. */
 static ag_status add_caustic_radius(const photon_map *global, hash128 *in_out_hash)
 {
     photon photons[CAUSTIC_PHOTONS] = {0};

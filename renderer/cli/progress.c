@@ -15,7 +15,7 @@
 #include <unistd.h>
 
 enum { LINE_STEP = 5 };     /* percent, between two lines of a log */
-enum { LINE_SECONDS = 10 }; /* ... while a scene is read, of which only large files take so long */
+enum { LINE_SECONDS = 10 }; /* between two such lines while a scene reads large files */
 
 static pthread_mutex_t terminal = PTHREAD_MUTEX_INITIALIZER; /* one line at a time, from the log or from here */
 
@@ -217,7 +217,8 @@ static void tell_frame_as_json(const progress *p)
                 p->frame_count);
 }
 
-/* "render"; of a scene that is read also how much of it, which is little of the whole work only in most scenes. */
+/* Writes the phase's name and, while a scene is read, how much of it has been read: the percentage of the whole work
+ * hardly moves then, however long it takes. Returns out. */
 static const char *phase_text(const progress *p, double fraction, char *out, size_t size)
 {
     if (p->phase == AG_PHASE_LOAD && fraction >= 0.01)

@@ -131,7 +131,8 @@ typedef struct light_sample {
     rgb radiance;       /* area, infinite: W/m^2/sr; delta lights: irradiance perpendicular to direction, W/m^2 */
     float pdf_solid_angle; /* 1 for delta lights */
     bool is_delta;         /* no scattered ray can meet it: no MIS */
-    /* of area lights: where on the lamp; of meshes alone the triangle, and as surface_sample has them */
+    /* The sampled point of an area light: its geometric normal and, on a mesh alone, triangle and barycentrics as in
+     * surface_sample. Undefined for other lights. */
     vec3 lamp_normal;
     uint32_t lamp_triangle;
     vec2 lamp_barycentrics;

@@ -73,7 +73,8 @@ static void subtract(tile_format f, uint32_t shift, uint32_t *values)
     }
 }
 
-/* What subtract did, back. */
+/* Restores the values from the differences that subtract has put in their place. first: the first pixel's values, as
+ * the packed tile has them. */
 static void add_up(tile_format f, uint32_t shift, const unsigned char *first, uint32_t *values)
 {
     const size_t channels = f.channel_count;

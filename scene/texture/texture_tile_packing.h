@@ -20,7 +20,7 @@ typedef struct tile_format {
 } tile_format;
 
 static inline size_t tile_format_bytes(tile_format f) { return f.row_values * f.row_count * f.value_bytes; }
-/* A number for each value, aligned as that. */
+/* Returns the size of the memory that packing and unpacking work in: a uint32_t for each value, aligned as one. */
 static inline size_t tile_scratch_bytes(tile_format f) { return f.row_values * f.row_count * sizeof(uint32_t); }
 
 /* Gives how many bytes were written to out: at most seven eighths of tile_format_bytes, or all of them, as they were.

@@ -32,7 +32,8 @@ static void expect_untouched(const void *memory, size_t begin)
         assert_int_equal(((const unsigned char *)memory)[begin + k], UNTOUCHED);
 }
 
-/* What memory of just these sizes gives, which address sanitizers watch. */
+/* Unpacks from and in memory of exactly the sizes that tile_unpack asks for, so that an address sanitizer tells of each
+ * access beyond them. Returns its status. */
 static ag_status unpack_in_bounds(tile_format f, size_t count, unsigned char *out_pixels)
 {
     unsigned char *input = malloc(count > 0 ? count : 1);
@@ -45,7 +46,7 @@ static ag_status unpack_in_bounds(tile_format f, size_t count, unsigned char *ou
     return status;
 }
 
-/* Unpacks to back; nothing else is written to. */
+/* Unpacks to `back`, and checks that nothing beyond it and beyond the scratch memory is written. Returns the status. */
 static ag_status unpack(tile_format f, size_t count)
 {
     memset(back, UNTOUCHED, sizeof back);
