@@ -32,6 +32,10 @@ struct bvh_device {
     unsigned holder_count;
     char isa[16];
     _Atomic int64_t memory_bytes; /* moved by Embree's memory monitor, from several threads; a plain count */
+    log_sink *log;                /* for errors; borrowed while trees are made */
+    /* The first RTCError since trees began to be made. Embree keeps an error for the thread that met it, which may be
+     * any that joins, so asking it from one thread does not do. Read when all have ended; relaxed. */
+    atomic_int error;
 };
 
 char embree_threads;
@@ -56,10 +60,16 @@ static bool report_progress(void *user, double fraction)
     return goes_on;
 }
 
-static void log_embree_error(void *user, enum RTCError code, const char *text)
+static void take_error(void *user, enum RTCError code, const char *text)
 {
-    if (code != RTC_ERROR_CANCELLED)
-        log_message(user, AG_LOG_ERROR, "Embree: %s", text ? text : "unknown error");
+    struct bvh_device *d = user;
+    int none = RTC_ERROR_NONE;
+    order_after_library(&embree_threads);
+    if (code == RTC_ERROR_CANCELLED) /* the run knows */
+        return;
+    if (atomic_compare_exchange_strong_explicit(&d->error, &none, (int)code, memory_order_relaxed,
+                                                memory_order_relaxed))
+        log_message(d->log, AG_LOG_ERROR, "Embree: %s", text ? text : "unknown error");
 }
 
 /* --- build --- */
@@ -312,7 +322,8 @@ static ag_status make_trees(bvh *b, const scene *s, run_context *run, unsigned j
     ag_status status = make_objects(b, s, run, joiners, reuse);
     if (status == AG_OK)
         status = make_world(b, s, run, joiners, reuse);
-    const enum RTCError error = rtcGetDeviceError(b->device->embree); /* always read: it is kept until then */
+    (void)rtcGetDeviceError(b->device->embree); /* this thread's is kept until it is read */
+    const int error = atomic_load_explicit(&b->device->error, memory_order_relaxed);
     if (status == AG_OK && error != RTC_ERROR_NONE)
         status = error == RTC_ERROR_OUT_OF_MEMORY ? AG_ERROR_MEMORY : AG_ERROR_RAY_TRACING;
     return status;
@@ -348,7 +359,9 @@ ag_status bvh_create(const scene *s, run_context *run, const char *isa, scene_re
     }
     if (status == AG_OK) {
         list_spheres(b, s);
-        rtcSetDeviceErrorFunction(b->device->embree, log_embree_error, run->log);
+        b->device->log = run->log;
+        atomic_store_explicit(&b->device->error, RTC_ERROR_NONE, memory_order_relaxed);
+        rtcSetDeviceErrorFunction(b->device->embree, take_error, b->device);
         status = make_trees(b, s, run, joiners, reuse);
         rtcSetDeviceErrorFunction(b->device->embree, NULL, NULL); /* the log may go before the bvh does */
     }
