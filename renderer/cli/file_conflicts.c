@@ -175,6 +175,15 @@ static bool is_written_over(const options *o, const ag_scene *scene)
     return has;
 }
 
+/* Whether the picture is not rendered, since all its files are there. */
+static bool is_skipped(const options *o)
+{
+    for (int i = 0; i < o->outfile_count; i++)
+        if (!picture_mark_is_complete(o->outfiles[i]))
+            return false;
+    return o->no_clobber && o->outfile_count > 0;
+}
+
 bool file_conflicts_with_scene(const options *o, const ag_scene *scene)
 {
     const options *all = o->of_all_frames;
@@ -184,7 +193,8 @@ bool file_conflicts_with_scene(const options *o, const ag_scene *scene)
     /* The first frame's files are likely to be those of the others. */
     for (int i = 1; all && o->frame == all->frames.numbers[0] && i < all->frames.count && !has; i++) {
         options other;
-        has = frame_options_make(all, all->frames.numbers[i], &other) && is_written_over(&other, scene);
+        has = frame_options_make(all, all->frames.numbers[i], &other) && !is_skipped(&other) &&
+              is_written_over(&other, scene);
         frame_options_reset(&other, all->outfile_count);
     }
     return has;
@@ -234,7 +244,7 @@ static bool add_uses(use_list *list, const options *o, int frame)
             add_use(list, one.scene, frame, READ_SCENE);
         if (is_noted(o->asked.sky_file, frame))
             add_use(list, one.asked.sky_file, frame, READ_SKY);
-        for (int i = 0; i < outputs.count; i++)
+        for (int i = 0; i < outputs.count && !is_skipped(&one); i++)
             if (outputs.paths[i] != one.render.photon_map_file || is_noted(o->render.photon_map_file, frame))
                 add_use(list, outputs.paths[i], frame, i);
     }

@@ -62,6 +62,11 @@ static void test_frames_in_each_others_files(void **state)
     expect_text(in_folder("sky.2.exr"), "a sky");
     assert_int_not_equal(access(in_folder("sky.1.exr"), F_OK), 0);
     assert_int_not_equal(access(in_folder("b.1.exr"), F_OK), 0);
+    /* nor is what is there already, and is not written again */
+    expect_end(ARGUMENTS(TINY, "--frames=2-3", "--no-clobber", "-o", "b.#.exr", "floor.pbrt"), 0,
+               "skipped: 'b.3.exr' is there");
+    expect_end(ARGUMENTS(TINY, "--frames=1-3", "--no-clobber", "--sky=b.3.exr", "-o", "b.#.exr", BOX), 0,
+               "skipped: 'b.3.exr' is there");
     /* one map for all frames is no conflict */
     expect_end(ARGUMENTS("--size=8x8", "--spp=1", "--photons=2000", "--frames=1-2", "--photon-map=all.map", "-o",
                          "c.#.exr", BOX),
