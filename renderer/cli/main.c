@@ -209,15 +209,33 @@ static ag_status tell_statistics(picture_run *r, ag_status status, const passes_
         ag_statistics statistics = ag_context_statistics(r->context);
         summary_print(stderr, &statistics);
     }
-    const bool is_stopped = status == AG_CANCELLED && signals_stop() && !is_made; /* before there was any picture */
+    /* before there was any picture */
+    const bool is_stopped = status == AG_CANCELLED && (signals_stop() || signals_is_time_up()) && !is_made;
     if (!o->stats || !(is_made || r->lacks_memory || is_stopped))
         return status;
     if (is_stopped) {
-        ag_context_note_end(r->context, AG_END_SIGNAL);
+        ag_context_note_end(r->context, signals_stop() ? AG_END_SIGNAL : AG_END_TIME_LIMIT);
         ag_context_clear_cancel(r->context); /* for this file */
     }
     const ag_status written = ag_statistics_write(r->context, o->stats);
     return status == AG_OK ? written : status;
+}
+
+/* Errors: AG_ERROR_MEMORY where reading took more than --memory allows; those of ag_scene_load_as. */
+static ag_status load_scene(ag_context *context, const options *o, const ag_scene_settings *asked, ag_scene **out_scene)
+{
+    if (o->memory_limit > 0)
+        memory_limit_watch(o->memory_limit, context);
+    const ag_status status = ag_scene_load_as(context, o->scene, asked, out_scene);
+    if (!memory_limit_end_watch() || signals_stop() || signals_is_time_up())
+        return status;
+    ag_context_clear_cancel(context);
+    if (status == AG_OK || status == AG_CANCELLED) { /* it may have come when the scene was there */
+        ag_scene_destroy(*out_scene);
+        *out_scene = NULL;
+        return AG_ERROR_MEMORY;
+    }
+    return status;
 }
 
 /* Renders a picture; frame: -1 where there are no frames. */
@@ -227,12 +245,14 @@ static ag_status run(ag_context *context, options *o, int frame, passes_result *
     if (o->no_clobber && is_there(o))
         return AG_OK;
     AG_TRY(check_options(context, o));
+    if (o->time_limit > 0.0 && !o->dry_run)
+        signals_set_deadline(o->time_limit);
     picture_run r = {.context = context, .o = o, .frame = frame};
     ag_scene *scene = NULL;
     ag_scene_settings asked = o->asked;
     asked.definitions = o->definitions;
     asked.definition_count = o->definition_count;
-    ag_status status = ag_scene_load_as(context, o->scene, &asked, &scene);
+    ag_status status = load_scene(context, o, &asked, &scene);
     if (status == AG_OK)
         status = render_scene(&r, scene, out_result);
     if (status == AG_ERROR_MEMORY) {
@@ -246,7 +266,15 @@ static ag_status run(ag_context *context, options *o, int frame, passes_result *
 
 static void tell_end(const options *o, ag_status status, const passes_result *result)
 {
-    if ((status == AG_CANCELLED || result->is_partial) && o->verbosity >= 0) {
+    const bool is_late = signals_is_time_up() && !signals_stop();
+    if (status == AG_CANCELLED && is_late && result->samples.most > 0)
+        fprintf(
+            stderr,
+            "afterglow: error: time limit: the picture is not complete: it has %.4g samples per pixel, from %d to %d\n",
+            result->samples.mean, result->samples.least, result->samples.most);
+    else if (status == AG_CANCELLED && is_late)
+        fprintf(stderr, "afterglow: error: time limit: it was reached before there was anything to write\n");
+    else if ((status == AG_CANCELLED || result->is_partial) && o->verbosity >= 0) {
         if (result->is_partial && result->samples.most > 0)
             fprintf(stderr, "afterglow: interrupted: the picture has %.4g samples per pixel, from %d to %d\n",
                     result->samples.mean, result->samples.least, result->samples.most);

@@ -305,18 +305,18 @@ static const option_row ROWS[] = {
                   "How much *--texture-cache* may keep, as *--texture-memory* (default 32G). Beyond that the files "
                   "that were not used for the longest time are removed; who still reads them is not disturbed."},
      .take = take_texture_cache_size},
-    {.text = {.name = "confine",
-              .section = "Scene",
-              .help = "for scenes of strangers: read files below the scene's folder alone, and write only what the "
-                      "command line names",
-              .manual =
-                  "For scenes that are not trusted. Files are read below the scene's own folder alone, "
-                  "whatever it names and however (by \"..\", links, encoded URIs); of all else not even "
-                  "whether it is there shows in a message. The scene's own name for its picture is ignored: "
-                  "what is written is what the command line names. Formats that assimp reads are read where "
-                  "the kernel has Landlock, which holds assimp's process in those folders, else refused. How much "
-                  "a scene may take is bounded by *--memory*, and by a soft limit of CPU time (*ulimit -St*) or "
-                  "*timeout*(1), which end its reading, too; *--time-limit* does not."},
+    {.text =
+         {.name = "confine",
+          .section = "Scene",
+          .help = "for scenes of strangers: read files below the scene's folder alone, and write only what the "
+                  "command line names",
+          .manual =
+              "For scenes that are not trusted. Files are read below the scene's own folder alone, "
+              "whatever it names and however (by \"..\", links, encoded URIs); of all else not even "
+              "whether it is there shows in a message. The scene's own name for its picture is ignored: "
+              "what is written is what the command line names. Formats that assimp reads are read where "
+              "the kernel has Landlock, which holds assimp's process in those folders, else refused. How much "
+              "a scene may take is bounded by *--memory*, and by *--time-limit* or a soft limit of CPU time (*ulimit -St*), which end its reading, too."},
      FLAG(context.is_confined)},
     {.text = {.name = "confine-to",
               .argument = "FOLDER",

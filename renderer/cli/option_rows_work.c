@@ -171,15 +171,22 @@ static const option_row ROWS[] = {
                         "the message says which; scenes are compared by what is in them, so that files may have "
                         "moved."},
      FLAG(resume)},
-    {.text = {.name = "time-limit",
-              .argument = "TIME",
-              .section = "Work",
-              .help = "stop after so many seconds, or HH:MM:SS, with the samples that there are",
-              .manual = "Seconds, or HH:MM:SS, from the beginning of the scene's reading on. No pass over the "
-                        "picture is begun that would not end in time, as the one before tells, so that all pixels "
-                        "have the same number of samples; one sample is always taken. The picture counts as "
-                        "complete, and a message says how many samples it has; with *--checkpoint* a checkpoint "
-                        "stays for *--resume* to go on with."},
+    {.text =
+         {.name = "time-limit",
+          .argument = "TIME",
+          .section = "Work",
+          .help = "stop after so many seconds, or HH:MM:SS, with the samples that there are",
+          .manual =
+              "Seconds, or HH:MM:SS, from the beginning of the scene's reading on, for each picture. No pass over the "
+              "picture is begun that would not end in time, as the one before tells, so that all pixels "
+              "have the same number of samples, unless a pass takes longer than was to be expected: it ends with the "
+              "limit. The picture counts as "
+              "complete, and a message says how many samples it has; with *--checkpoint* a checkpoint "
+              "stays for *--resume* to go on with. A limit that is reached before each pixel has one sample ends "
+              "the run with exit status 3: within the first sample what there is of the picture is written and marked as unfinished, "
+              "as at a signal; while the scene is read or photons are traced nothing is written but the statistics. Files are written, "
+              "and denoised, after the limit. "
+              "*--dry-run* does not heed it."},
      .take = take_time_limit},
     {.text =
          {.name = "memory",
@@ -192,8 +199,9 @@ static const option_row ROWS[] = {
               "1024^2, ... What a picture will need is predicted when the scene is there (see "
               "*--dry-run*): where it is more, a message tells how much and for what, and the exit status "
               "is 3. A run that needs more all the same ends for want of memory instead of taking it from "
-              "others; since libraries reserve memory that they never touch, 24 MB beyond are allowed then, and 256 MB "
-              "while the scene is read."},
+              "others; since libraries reserve memory that they never touch, 24 MB beyond are allowed then. While the scene is read "
+              "the memory that is in use is looked at every 2 ms, and reading ends when it is more, and 24 MB more than before; it may be passed by "
+              "what is taken meanwhile, up to 256 MB."},
      .take = take_memory},
     {.text =
          {.name = "dry-run",

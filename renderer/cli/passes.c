@@ -37,7 +37,7 @@ typedef struct passes {
     bool is_view;               /* what is written is another view of a picture that was complete before */
     bool *is_written;           /* of each outfile, as by picture_files_write; owned */
     ag_status unwritten;        /* AG_OK, or AG_ERROR_OUTPUT: a file is missing in the end, which has been told */
-    ag_end cut;                 /* AG_END_TIME_LIMIT, AG_END_KEPT: it ends in order with fewer; else AG_END_NONE */
+    ag_end cut;                 /* AG_END_TIME_LIMIT, AG_END_KEPT: it ends with fewer; else AG_END_NONE */
 } passes;
 
 double passes_seconds(void)
@@ -193,7 +193,16 @@ static ag_status serve(passes *p, bool is_after_pass)
     return saved == AG_ERROR_OUTPUT ? AG_OK : saved;
 }
 
-/* AG_PAUSED: a signal wants the end. */
+/* The time is up within a pass, or between two. AG_PAUSED: there are pixels without a sample, so it is no picture. */
+static ag_status end_in_time(passes *p, ag_status status)
+{
+    p->cut = AG_END_TIME_LIMIT;
+    if (status == AG_OK || ag_rendering_go_back(p->rendering) == AG_OK) /* whole passes are better, if they are kept */
+        return AG_OK;
+    return ag_rendering_sample_counts(p->rendering).least > 0 ? AG_OK : AG_PAUSED;
+}
+
+/* AG_PAUSED: a signal wants the end, or the time is up and there is no whole picture yet. */
 static ag_status run_passes(passes *p)
 {
     int samples = 1;
@@ -215,6 +224,8 @@ static ag_status run_passes(passes *p)
             p->cut = AG_END_KEPT;
             return AG_OK;
         }
+        if (signals_is_time_up())
+            return end_in_time(p, status);
         AG_TRY(serve(p, status == AG_OK));
         if (status != AG_OK)
             continue;
@@ -276,12 +287,12 @@ static void tell_noise(const ag_noise *noise, const ag_sample_counts *samples, c
 
 static ag_end find_end(const passes *p, const passes_result *result)
 {
+    if (p->cut != AG_END_NONE)
+        return p->cut;
     if (result->is_partial)
         return AG_END_SIGNAL;
     if (p->o->photons_only)
         return AG_END_PHOTONS;
-    if (p->cut != AG_END_NONE)
-        return p->cut;
     return result->samples.most < p->final ? AG_END_NOISE : AG_END_SAMPLES;
 }
 
@@ -290,7 +301,7 @@ static ag_status render(passes *p, passes_result *out_result, ag_noise *out_nois
 {
     ag_status status = p->o->photons_only ? AG_OK : run_passes(p);
     out_result->is_partial = status == AG_PAUSED;
-    signals_set_timer(INFINITY);
+    signals_set_deadline(INFINITY); /* what there is is written, however long that takes */
     if (status == AG_PAUSED)
         status = AG_OK;
     if (status == AG_ERROR_SYSTEM && ag_rendering_sample_counts(p->rendering).most > 0) {
@@ -329,7 +340,7 @@ static ag_status show(passes *p, ag_film *film, const ag_render_settings *settin
     }
     if (p->checkpoint && !result->is_partial && p->cut == AG_END_NONE && written == AG_OK)
         unlink(p->checkpoint); /* it has served */
-    if (p->cut != AG_END_NONE && o->verbosity >= 0)
+    if (p->cut != AG_END_NONE && !result->is_partial && o->verbosity >= 0)
         fprintf(stderr, "afterglow: %s: the picture has %.4g of %d samples per pixel\n",
                 p->cut == AG_END_KEPT ? "stopped by who watched it" : "time limit", result->samples.mean, p->final);
     if (has_picture && o->verbosity >= (settings->noise_level > 0.0f ? 0 : 1))

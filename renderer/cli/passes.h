@@ -10,15 +10,15 @@
 
 typedef struct passes_result {
     ag_sample_counts samples;
-    bool is_partial;  /* a signal ended it: the picture is what there was, and there may be none */
+    bool is_partial;  /* a signal or the time limit ended it: the picture is what there was, and there may be none */
     bool is_complete; /* it ended in order, if with AG_ERROR_OUTPUT since a file could not be written */
 } passes_result;
 
 /* Seconds of a monotonic clock, the one that options.begun is read from. */
 double passes_seconds(void);
 
-/* Renders, and writes every outfile; tells which were written. AG_CANCELLED: a signal ended it; *out_result is valid
- * then too. Other errors as of what it calls. */
+/* Renders, and writes every outfile; tells which were written. AG_CANCELLED: a signal ended it, or the time limit
+ * before each pixel had a sample; *out_result is valid then too. Other errors as of what it calls. */
 ag_status passes_render(ag_context *context, const options *o, const ag_scene *scene,
                         const ag_render_settings *settings, passes_result *out_result);
 

@@ -2,6 +2,7 @@
 #define _GNU_SOURCE
 #include "signals.h"
 
+#include "passes.h"
 #include "terminal_query.h"
 
 #include <errno.h>
@@ -16,6 +17,10 @@
 
 static ag_context *signalled_context;
 static volatile sig_atomic_t stop_signal, wants_snapshot, is_rendering;
+
+/* There is one timer, for what comes first. */
+static double deadline = INFINITY; /* in seconds of passes_seconds() */
+static volatile sig_atomic_t timer_is_deadline, is_time_up;
 
 static volatile sig_atomic_t resets_terminal, ends_sixels;
 /* Of the thread that draws and of the handler of SIGTSTP, which may run on any thread. */
@@ -166,7 +171,12 @@ static void on_snapshot(int number)
 static void on_timer(int number)
 {
     (void)number;
-    ag_context_pause(signalled_context);
+    if (timer_is_deadline)
+        is_time_up = 1;
+    if (timer_is_deadline && !is_rendering)
+        ag_context_cancel(signalled_context);
+    else
+        ag_context_pause(signalled_context);
 }
 
 static void block(int how)
@@ -201,6 +211,7 @@ void signals_catch_abort(void)
 
 void signals_catch(ag_context *context)
 {
+    is_time_up = 0; /* for the picture before */
     signalled_context = context;
     for (size_t i = 0; i < sizeof STOPPING / sizeof *STOPPING; i++) {
         struct sigaction before, action = {.sa_handler = on_stop, .sa_flags = SA_RESTART};
@@ -222,7 +233,7 @@ void signals_catch(ag_context *context)
 
 void signals_release(void)
 {
-    signals_set_timer(INFINITY);
+    signals_set_deadline(INFINITY);
     block(SIG_BLOCK);
     is_released = true;
 }
@@ -243,6 +254,10 @@ bool signals_take_snapshot(void)
 void signals_set_timer(double seconds)
 {
     struct itimerval timer = {0};
+    const double left = is_time_up ? INFINITY : deadline - passes_seconds();
+    setitimer(ITIMER_REAL, &timer, NULL); /* it does not end while it is changed */
+    timer_is_deadline = left <= seconds && isfinite(left);
+    seconds = fmin(seconds, left);
     if (isfinite(seconds) && seconds < 1e9) {
         double at_least = fmax(seconds, 1e-3);
         timer.it_value.tv_sec = (time_t)at_least;
@@ -250,3 +265,11 @@ void signals_set_timer(double seconds)
     }
     setitimer(ITIMER_REAL, &timer, NULL);
 }
+
+void signals_set_deadline(double seconds)
+{
+    deadline = passes_seconds() + seconds;
+    signals_set_timer(INFINITY);
+}
+
+bool signals_is_time_up(void) { return is_time_up; }

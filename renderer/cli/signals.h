@@ -1,4 +1,4 @@
-/* signals.h: what the system tells the program while it works: stop, show the picture so far, time is up.
+/* signals.h: what the system tells the program while it works: stop, show the picture so far; and that time is up.
  * Flow: handlers -> [here] -> main, passes, progress. Threads: main's alone, but for the functions about drawing, which
  * progress calls from any thread. Handlers set flags and pause or cancel the context; those that end the process or
  * stop it reset the terminal before, and those that end it at once write why and remove unfinished files. */
@@ -42,5 +42,10 @@ bool signals_take_snapshot(void);
 
 /* Pauses the rendering after so many seconds (at least a millisecond); INFINITY: never. */
 void signals_set_timer(double seconds);
+
+/* In so many seconds the time is up: rendering pauses then, all else is cancelled, as by a signal to stop. INFINITY:
+ * never. signals_catch forgets that it was up. */
+void signals_set_deadline(double seconds);
+bool signals_is_time_up(void);
 
 #endif

@@ -40,6 +40,59 @@ static void test_time_limit(void **state)
     }
 }
 
+static void expect_reason(const char *name, const char *reason)
+{
+    json_t *stats = stats_read(in_folder(name));
+    assert_string_equal(json_string_value(stats_find(stats, "end.reason")), reason);
+    json_decref(stats);
+    unlink(in_folder(name));
+}
+
+/* The limit may be reached while the scene is read, or its photons are traced: nothing is there to be written. */
+static void test_limit_before_the_picture(void **state)
+{
+    (void)state;
+    program_run run = RUN(SMALL, "--spp=1", "--time-limit=0.001", "--stats=a.json", "-o", "a.exr", BOX);
+    expect_exit(&run, 3);
+    expect_said(&run, "error: time limit: it was reached before there was anything to write");
+    program_run_reset(&run);
+    expect_reason("a.json", "time-limit");
+    run = RUN("--photons=20000000", "--photons-only", "--photon-map=a.map", "--time-limit=0.2", "--stats=a.json", BOX);
+    expect_exit(&run, 3);
+    program_run_reset(&run);
+    expect_reason("a.json", "time-limit");
+    run = RUN(SMALL, "--spp=1", "--frames=1-2", "--time-limit=0.001", "-o", "a.%d.exr", BOX);
+    expect_exit(&run, 3);
+    program_run_reset(&run);
+    expect_listing("");
+    run = RUN(SMALL, "--spp=2", "--time-limit=0.001", "--dry-run", BOX); /* which tells how long a picture would take */
+    expect_exit(&run, 0);
+    program_run_reset(&run);
+}
+
+/* Within the first sample it leaves what there is, marked as a signal's. The time that reading takes is not known:
+ * limits grow until one is reached within the sample, which takes longer. */
+static void test_limit_within_the_first_sample(void **state)
+{
+    (void)state;
+    program_run run = {0};
+    bool is_partial = false;
+    for (double limit = 0.03; !is_partial && limit < 100.0; limit *= 1.5) {
+        char option[64];
+        snprintf(option, sizeof option, "--time-limit=%g", limit);
+        run = RUN("--integrator=path", "--size=1600x1600", "--max-depth=64", "--spp=65536", "--noise=0", "--type=float",
+                  option, "--stats=a.json", "-o", "a.exr", BOX);
+        is_partial = strstr(run.err, "samples per pixel, from 0 to 1") != NULL;
+        expect_exit(&run, 3);
+        if (is_partial)
+            expect_said(&run, "error: time limit: the picture is not complete");
+        program_run_reset(&run);
+        expect_reason("a.json", "time-limit");
+    }
+    assert_true(is_partial);
+    expect_listing("a.exr a.exr.afterglow-unfinished");
+}
+
 static void test_preview(void **state)
 {
     (void)state;
@@ -138,6 +191,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         TEST_IN_FOLDER(test_time_limit),
+        TEST_IN_FOLDER(test_limit_before_the_picture),
+        TEST_IN_FOLDER(test_limit_within_the_first_sample),
         TEST_IN_FOLDER(test_preview),
         TEST_IN_FOLDER(test_noise),
         TEST_IN_FOLDER(test_default_samples),

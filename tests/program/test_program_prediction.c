@@ -163,6 +163,31 @@ static void test_limit_without_spaces(void **state)
     json_decref(stats);
 }
 
+/* A scene of many parts is given up as soon as they take more, and not when all of them are there. */
+static void test_limit_while_reading(void **state)
+{
+    (void)state;
+    enum { SPHERES = 250000 };
+    FILE *file = fopen(in_folder("many.pbrt"), "w");
+    assert_non_null(file);
+    fputs("Camera \"perspective\" WorldBegin\n", file);
+    for (int i = 0; i < SPHERES; i++)
+        fputs("Translate 0.01 0 0 Shape \"sphere\"\n", file);
+    assert_int_equal(fclose(file), 0);
+    program_run run = RUN("--memory=80M", "--integrator=path", "--spp=1", "--size=8x8", "--stats=a.json", "-o", "a.exr",
+                          in_folder("many.pbrt"));
+    expect_exit(&run, 3);
+    expect_said(&run, "--memory allows no more");
+    program_run_reset(&run);
+    expect_listing("a.json many.pbrt");
+    json_t *stats = stats_read(in_folder("a.json"));
+    expect_reason(stats, "memory");
+#if !IS_SANITIZED /* whose own memory counts, too */
+    assert_true(number_of(stats, "memory.peak_bytes") < 120.0 * 1024.0 * 1024.0);
+#endif
+    json_decref(stats);
+}
+
 static void test_limit(void **state)
 {
     (void)state;
@@ -197,6 +222,7 @@ int main(void)
         TEST_IN_FOLDER(test_dry_run),
         TEST_IN_FOLDER(test_samples),
         TEST_IN_FOLDER(test_memory),
+        TEST_IN_FOLDER(test_limit_while_reading),
         TEST_IN_FOLDER(test_memory_of_aiming),
         TEST_IN_FOLDER(test_memory_of_photons),
         TEST_IN_FOLDER(test_limit_without_spaces),

@@ -133,9 +133,9 @@ static void test_end(void **state)
     /* a level that no picture of 16 samples misses, and one that none reaches */
     expect_end(ARGUMENTS(QUICK, "--spp=64", "--noise=0.99", "--stats=a.json"), "noise", 16, 16);
     expect_end(ARGUMENTS(QUICK, "--spp=16", "--noise=1e-6", "--min-spp=2", "--stats=a.json"), "samples", 16, 16);
-    /* too short for more than the first pass, which is always there */
-    json_t *stats = stats_of(BOX, ARGUMENTS("--photons=3000", "--size=64x64", "--spp=65536", "--noise=0",
-                                            "--gather-samples=64", "--time-limit=0.01", "--stats=a.json"));
+    /* too short for all passes */
+    json_t *stats = stats_of(BOX, ARGUMENTS("--photons=3000", "--size=16x16", "--spp=65536", "--noise=0",
+                                            "--gather-samples=64", "--time-limit=2", "--stats=a.json"));
     assert_string_equal(json_string_value(stats_find(stats, "end.reason")), "time-limit");
     assert_true(stats_number(stats, "end.samples.mean") >= 1.0 && stats_number(stats, "end.samples.mean") < 65536.0);
     json_decref(stats);
