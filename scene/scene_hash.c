@@ -54,6 +54,31 @@ static void add_texture(hash128 *h, const texture *t)
     ADD(t->most);
 }
 
+/* The value textures that materials have had from the beginning. */
+enum { FIRST_VALUE_TEXTURES = 16 };
+
+/* Sheen, and roughness that has a direction. Maps of scenes without them, that were kept before there was either, stay
+ * valid. */
+static void add_principled_rest(hash128 *h, const material *m)
+{
+    bool is_without = rgb_is_black(m->sheen) && m->sheen_roughness == 0.0f && m->sheen_model == SHEEN_CHARLIE &&
+                      m->roughness_v == -1.0f && m->anisotropy == 0.0f && m->grain_turn == 0.0f &&
+                      m->grain_texture == SCENE_NO_TEXTURE;
+    for (size_t i = FIRST_VALUE_TEXTURES; i < sizeof m->value_textures / sizeof *m->value_textures; i++)
+        is_without = is_without && m->value_textures[i] == SCENE_NO_TEXTURE;
+    if (is_without)
+        return;
+    ADD(m->sheen);
+    ADD(m->sheen_roughness);
+    ADD(m->sheen_model);
+    ADD(m->roughness_v);
+    ADD(m->anisotropy);
+    ADD(m->grain_turn);
+    ADD(m->grain_texture);
+    hash128_add(h, m->value_textures + FIRST_VALUE_TEXTURES,
+                sizeof m->value_textures - FIRST_VALUE_TEXTURES * sizeof *m->value_textures);
+}
+
 static void add_material(hash128 *h, const material *m)
 {
     ADD(m->kind);
@@ -88,7 +113,8 @@ static void add_material(hash128 *h, const material *m)
     ADD(m->base_through);
     ADD(m->is_textured);
     ADD(m->remaps_roughness);
-    ADD(m->value_textures);
+    add_principled_rest(h, m);
+    hash128_add(h, m->value_textures, FIRST_VALUE_TEXTURES * sizeof *m->value_textures);
     ADD(m->displacement_texture);
     ADD(m->normal_map_texture);
     ADD(m->normal_scale);

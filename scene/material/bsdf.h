@@ -50,7 +50,8 @@ typedef enum bsdf_transport { BSDF_RADIANCE, BSDF_FLUX } bsdf_transport;
     X(LOBE_COAT_SCATTERED, bsdf_lobe_coat_scattered)             /* light that leaves a coat at any angle (coat.h) */  \
     X(LOBE_HAIR, bsdf_lobe_hair)                                 /* all light of a fibre (hair.h) */                   \
     X(LOBE_PRINCIPLED, bsdf_lobe_principled) /* of metal and dielectric: reflection, and straight or refracted */      \
-    X(LOBE_CLEARCOAT, bsdf_lobe_clearcoat)   /* reflection by the coat of the principled one */
+    X(LOBE_CLEARCOAT, bsdf_lobe_clearcoat)   /* reflection by the coat of the principled one */                        \
+    X(LOBE_SHEEN, bsdf_lobe_sheen)           /* reflection by the fibres of cloth (sheen.h) */
 
 typedef enum bsdf_lobe_kind {
 #define BSDF_LOBE_ENUM(kind, type) kind,
@@ -66,7 +67,7 @@ typedef struct bsdf_lobe {
     float probability; /* of being picked; those of all lobes sum to 1 */
 } bsdf_lobe;
 
-enum { BSDF_LOBES_MAX = 3 };
+enum { BSDF_LOBES_MAX = 4 };
 
 typedef struct bsdf {
     material_point material; /* the values that all lobes are evaluated from */

@@ -5,8 +5,6 @@
 #include "material/bsdf_lobe.h"
 #include "material/fresnel.h"
 
-static ggx facets_of(const principled_point *m) { return (ggx){m->alpha, m->alpha}; }
-
 static ggx coat_facets_of(const principled_point *m)
 {
     float alpha = m->clearcoat_roughness * m->clearcoat_roughness;
@@ -36,18 +34,18 @@ static facet_shares facet_at(const principled_point *m, vec3 o, float cosine)
 
 static void reflection(const principled_point *m, vec3 o, vec3 i, rgb *out_value, float *out_pdf)
 {
-    ggx facets = facets_of(m);
+    ggx facets = m->facets;
     vec3 h = ggx_half_vector(o, i);
     float cosine = fabsf(vec3_dot(o, h)), value = ggx_reflection(facets, o, i, h);
     facet_shares f = facet_at(m, o, cosine);
-    *out_value = rgb_scale(f.reflected, value * principled_coat_factor(m, o.z, i.z));
+    *out_value = rgb_scale(f.reflected, value * principled_cover_factor(m, o.z, i.z));
     *out_pdf = ggx_reflection_pdf(facets, o, h) * f.reflection_probability;
 }
 
 static void transmission(const principled_point *m, bsdf_transport transport, vec3 o, vec3 i, rgb *out_value,
                          float *out_pdf)
 {
-    ggx facets = facets_of(m);
+    ggx facets = m->facets;
     float value, cosine;
     if (m->is_thin) {
         vec3 mirrored = {i.x, i.y, -i.z}, h = ggx_half_vector(o, mirrored);
@@ -58,7 +56,7 @@ static void transmission(const principled_point *m, bsdf_transport transport, ve
         return;
     }
     facet_shares f = facet_at(m, o, cosine);
-    *out_value = rgb_scale(f.through, value * principled_coat_factor(m, o.z, i.z));
+    *out_value = rgb_scale(f.through, value * principled_cover_factor(m, o.z, i.z));
     *out_pdf *= 1.0f - f.reflection_probability;
 }
 
@@ -97,12 +95,12 @@ static bool mirror_principled(const bsdf *b, bsdf_transport transport, vec3 o, f
     *out_local = bsdf_lobe_mirror(o, &n);
     facet_shares f = facet_at(m, o, fabsf(o.z));
     if (u_lobe < f.reflection_probability) {
-        *out_weight = rgb_scale(f.reflected, principled_coat_factor(m, o.z, o.z) / f.reflection_probability);
+        *out_weight = rgb_scale(f.reflected, principled_cover_factor(m, o.z, o.z) / f.reflection_probability);
         return true;
     }
     if (!pass_through(m, o, n, out_local))
         return false;
-    float scale = principled_coat_factor(m, o.z, out_local->z) / (1.0f - f.reflection_probability);
+    float scale = principled_cover_factor(m, o.z, out_local->z) / (1.0f - f.reflection_probability);
     if (transport == BSDF_RADIANCE && !m->is_thin)
         scale *= o.z >= 0.0f ? 1.0f / (m->ior * m->ior) : m->ior * m->ior;
     *out_weight = rgb_scale(f.through, scale);
@@ -120,7 +118,7 @@ static bool sample_principled(const bsdf *b, bsdf_transport transport, vec3 o, f
 {
     (void)transport;
     const principled_point *m = &b->material.principled;
-    vec3 h = sample_facet_of(facets_of(m), o, u);
+    vec3 h = sample_facet_of(m->facets, o, u);
     bool is_reflection = u_lobe < facet_at(m, o, fabsf(vec3_dot(o, h))).reflection_probability;
     if (is_reflection)
         *out_local = reflect_about(o, h);

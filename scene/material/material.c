@@ -10,8 +10,7 @@
 #include <string.h>
 
 enum { VALUE_TEXTURE_COUNT = sizeof((material *)0)->value_textures / sizeof(uint32_t) };
-_Static_assert(offsetof(material, value_textures[VALUE_TEXTURE_COUNT - 1]) ==
-                   offsetof(material, clearcoat_roughness_texture),
+_Static_assert(offsetof(material, value_textures[VALUE_TEXTURE_COUNT - 1]) == offsetof(material, anisotropy_texture),
                "value_textures counts the names beside it");
 
 void material_make_rough_on_both_axes(float *alpha_u, float *alpha_v)
@@ -31,13 +30,14 @@ material material_make(material_kind kind)
     m.ior = 1.5f;
     m.specular_color = rgb_gray(1.0f);
     m.specular = m.metallic = m.roughness = 1.0f;
+    m.roughness_v = -1.0f;
     m.is_thin = true;
     m.hair_beta_m = m.hair_beta_n = 0.3f;
     m.hair_tilt_degrees = 2.0f;
     m.mix_amount = 0.5f;
     for (size_t i = 0; i < VALUE_TEXTURE_COUNT; i++)
         m.value_textures[i] = SCENE_NO_TEXTURE;
-    m.displacement_texture = m.normal_map_texture = SCENE_NO_TEXTURE;
+    m.displacement_texture = m.normal_map_texture = m.grain_texture = SCENE_NO_TEXTURE;
     m.normal_scale = 1.0f;
     if (material_type_of(kind)->init)
         material_type_of(kind)->init(&m);

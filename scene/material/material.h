@@ -1,11 +1,12 @@
 /* material.h: materials as scene files describe them. material_point.h holds a material's values at a hit, from
  * which bsdf.h evaluates scattering. The parameters and their defaults are pbrt-v4's (pbrt.org/fileformat-v4,
  * "Materials"), those of MATERIAL_PRINCIPLED glTF's (Khronos, "glTF 2.0 Specification", appendix B;
- * KHR_materials_transmission, _ior, _specular, _clearcoat).
+ * KHR_materials_transmission, _ior, _specular, _clearcoat, _sheen, _anisotropy).
  * Threads: read-only once the scene is committed. */
 #ifndef AFTERGLOW_MATERIAL_H
 #define AFTERGLOW_MATERIAL_H
 
+#include "material/sheen.h"
 #include "math/vec3.h"
 
 #include <stdint.h>
@@ -25,7 +26,7 @@
     X(MATERIAL_COATED_DIFFUSE, coated_diffuse_material)     /* a dielectric coat on a diffuse base */                  \
     X(MATERIAL_COATED_CONDUCTOR, coated_conductor_material) /* a dielectric coat on a conductor */                     \
     X(MATERIAL_HAIR, hair_material)                         /* a fibre, coloured within (hair.h); mostly on curves */  \
-    X(MATERIAL_PRINCIPLED, principled_material)             /* glTF 2.0's, with transmission, ior, specular, coat */   \
+    X(MATERIAL_PRINCIPLED, principled_material)             /* glTF 2.0's, with its extensions (principled.h) */       \
     X(MATERIAL_MIX, no_material)                            /* one of two others, picked by position */
 
 typedef enum material_kind {
@@ -56,12 +57,17 @@ typedef struct material {
 
     /* Principled materials, whose reflectance is the base colour, and ior >= 1 or 0 (infinite): */
     float metallic;            /* [0, 1] */
-    float roughness;           /* as it is perceived, [0, 1]; alpha_u and alpha_v are set to its square */
+    float roughness;           /* as it is perceived, [0, 1]; of this the square is alpha_u, and alpha_v too */
+    float roughness_v;         /* likewise, of alpha_v alone; less than 0: that of u */
+    float anisotropy;          /* strength of KHR_materials_anisotropy, which makes alpha_u larger; [0, 1] */
     float transmission;        /* share of what enters a dielectric that goes through, [0, 1] */
     float specular;            /* of the dielectric's reflection, [0, 1] */
     rgb specular_color;        /* colour of the dielectric's reflection at normal incidence, >= 0 */
     float clearcoat;           /* [0, 1] */
     float clearcoat_roughness; /* as it is perceived, [0, 1] */
+    rgb sheen;                 /* factor of the sheen's reflectance, >= 0, bounded by sheen_factor_max */
+    float sheen_roughness;     /* as it is perceived, or of a SHEEN_VELVET its sigma, [0, 1] */
+    sheen_model sheen_model;
     bool is_thin; /* transmission is that of a thin wall: straight on; else it is the surface of a volume */
 
     /* Principled materials, set by scene_add_material: */
@@ -78,9 +84,10 @@ typedef struct material {
             uint32_t eta_texture, k_texture; /* conductor, from air */
             uint32_t base_alpha_u_texture, base_alpha_v_texture;
             uint32_t metallic_texture, roughness_texture, transmission_texture, specular_texture,
-                specular_color_texture, clearcoat_texture, clearcoat_roughness_texture; /* principled */
+                specular_color_texture, clearcoat_texture, clearcoat_roughness_texture;               /* principled */
+            uint32_t sheen_texture, sheen_roughness_texture, roughness_v_texture, anisotropy_texture; /* too */
         };
-        uint32_t value_textures[16]; /* all of these */
+        uint32_t value_textures[20]; /* all of these */
     };
 
     /* Textures that tilt the shading normal, SCENE_NO_TEXTURE: none; for a mix, those of the material that is picked
@@ -88,6 +95,11 @@ typedef struct material {
     uint32_t displacement_texture; /* a float: apparent height of the surface along its normal, scene units */
     uint32_t normal_map_texture;   /* a colour: 2 c - 1 is the normal along dp/du, dp/dv and the shading normal */
     float normal_scale;            /* factor of its first two components, usually 1 */
+
+    /* The direction along which alpha_u is the roughness: dp/du, turned by these. For a mix, as above. */
+    float grain_turn;       /* in whole turns, from dp/du towards dp/dv; [-0.5, 0.5] */
+    uint32_t grain_texture; /* a colour, SCENE_NO_TEXTURE: none; 2 c - 1 of red and green is the direction to turn along
+                               dp/du and dp/dv */
 
     /* It is Lambertian and nothing else, uniform, and nothing tilts its shading normal. Set by scene_add_material. Some
      * code needs no bsdf then (README.md). */

@@ -3,6 +3,7 @@
 
 #include "material/fresnel.h"
 #include "material/ggx_albedo.h"
+#include "material/sheen.h"
 
 #include <stddef.h>
 
@@ -45,13 +46,40 @@ static float coat_through(const principled_point *m, float cosine)
     return 1.0f - m->clearcoat * (COAT_F0 * coat.of_f0 + coat.of_f90);
 }
 
+/* Of a sheen that is there. KHR_materials_sheen: what lies below gets what the sheen leaves of the colour that it
+ * reflects most. */
+static float sheen_through(const principled_point *m, float cosine)
+{
+    return fmaxf(0.0f,
+                 1.0f - rgb_max(m->sheen) * sheen_albedo((sheen_model)m->sheen_model, m->sheen_roughness, cosine));
+}
+
+static float cover_through(const principled_point *m, float cosine)
+{
+    const float through = coat_through(m, cosine);
+    return m->has_sheen ? through * sheen_through(m, cosine) : through;
+}
+
+static float interface_reflectance_of(const principled_point *m, float alpha, float cosine)
+{
+    const ggx_albedo interface = ggx_albedo_of(alpha, cosine);
+    /* the colour that is reflected most: the base gets no light twice, whatever its own colour */
+    return rgb_max(m->dielectric_f0) * interface.of_f0 + m->specular * interface.of_f90;
+}
+
+/* What a dielectric interface reflects at a cosine; of brushed facets, which reflect more in some directions about the
+ * normal than in others, what the smoother or the rougher axis alone would, whichever is more. */
+static float interface_reflectance(const principled_point *m, float cosine)
+{
+    const float u = interface_reflectance_of(m, m->facets.alpha_u, cosine);
+    return m->facets.alpha_u == m->facets.alpha_v ? u
+                                                  : fmaxf(u, interface_reflectance_of(m, m->facets.alpha_v, cosine));
+}
+
 float principled_base_transmittance(const principled_point *m, float cosine)
 {
     cosine = fabsf(cosine);
-    ggx_albedo interface = ggx_albedo_of(m->alpha, cosine);
-    /* the colour that is reflected most: the base gets no light twice, whatever its own colour */
-    float reflected = rgb_max(m->dielectric_f0) * interface.of_f0 + m->specular * interface.of_f90;
-    return fmaxf(0.0f, 1.0f - reflected) * coat_through(m, cosine);
+    return fmaxf(0.0f, 1.0f - interface_reflectance(m, cosine)) * cover_through(m, cosine);
 }
 
 /* The mean of t over the hemisphere, by Gauss's rule of 6 points. */
@@ -72,18 +100,38 @@ static rgb bound_below(rgb v) { return rgb_make(fmaxf(v.r, 0.0f), fmaxf(v.g, 0.0
 
 static rgb bound_above(rgb v) { return rgb_make(fminf(v.r, 1.0f), fminf(v.g, 1.0f), fminf(v.b, 1.0f)); }
 
-void principled_resolve(principled_point *p, rgb specular_color, float roughness)
+/* Khronos, KHR_materials_anisotropy: along the grain the roughness goes from that across it to 1. */
+ggx principled_facets(float roughness_u, float roughness_v, float anisotropy)
+{
+    const float u = clamp_to_unit(roughness_u), v = roughness_v < 0.0f ? u : clamp_to_unit(roughness_v);
+    const float strength = clamp_to_unit(anisotropy);
+    ggx facets = {u * u, v * v};
+    if (strength > 0.0f)
+        facets.alpha_u += (1.0f - facets.alpha_u) * (strength * strength);
+    material_make_rough_on_both_axes(&facets.alpha_u, &facets.alpha_v);
+    return facets;
+}
+
+static rgb bound_sheen(rgb sheen, sheen_model model)
+{
+    const float most = sheen_factor_max(model);
+    return rgb_make(fminf(fmaxf(sheen.r, 0.0f), most), fminf(fmaxf(sheen.g, 0.0f), most),
+                    fminf(fmaxf(sheen.b, 0.0f), most));
+}
+
+void principled_resolve(principled_point *p, rgb specular_color)
 {
     p->reflectance = bound_above(bound_below(p->reflectance));
-    float *const shares[] = {&p->metallic, &p->transmission, &p->specular, &p->clearcoat, &p->clearcoat_roughness};
+    float *const shares[] = {&p->metallic,  &p->transmission,        &p->specular,
+                             &p->clearcoat, &p->clearcoat_roughness, &p->sheen_roughness};
     for (size_t i = 0; i < sizeof shares / sizeof *shares; i++)
         *shares[i] = clamp_to_unit(*shares[i]);
-    roughness = clamp_to_unit(roughness);
-    p->alpha = roughness * roughness;
+    p->sheen = bound_sheen(p->sheen, (sheen_model)p->sheen_model);
+    p->has_sheen = !rgb_is_black(p->sheen);
     float f0 = 1.0f; /* ior 0 is glTF's word for an infinite one */
     if (p->ior > 0.0f) {
         p->ior = fmaxf(p->ior, 1.0f);
-        if (p->alpha >= MATERIAL_SMOOTH_ALPHA && principled_is_solid(p))
+        if (!material_is_smooth(p->facets.alpha_u, p->facets.alpha_v) && principled_is_solid(p))
             p->ior = fmaxf(p->ior, ROUGH_IOR_MIN);
         float root = (p->ior - 1.0f) / (p->ior + 1.0f);
         f0 = root * root;
@@ -98,30 +146,40 @@ principled_point principled_point_of(const material *m)
     return (principled_point){.reflectance = m->reflectance,
                               .dielectric_f0 = m->dielectric_f0,
                               .ior = m->ior,
-                              .alpha = m->alpha_u,
+                              .facets = {m->alpha_u, m->alpha_v},
                               .metallic = m->metallic,
                               .transmission = m->transmission,
                               .specular = m->specular,
                               .clearcoat = m->clearcoat,
                               .clearcoat_roughness = m->clearcoat_roughness,
                               .base_through = m->base_through,
+                              .sheen = m->sheen,
+                              .has_sheen = !rgb_is_black(m->sheen),
+                              .sheen_roughness = m->sheen_roughness,
+                              .sheen_model = (uint8_t)m->sheen_model,
                               .is_thin = m->is_thin};
 }
 
 void principled_prepare(material *m)
 {
     principled_point p = principled_point_of(m);
-    principled_resolve(&p, m->specular_color, m->roughness);
+    p.facets = principled_facets(m->roughness, m->roughness_v, m->anisotropy);
+    principled_resolve(&p, m->specular_color);
     m->reflectance = p.reflectance;
     m->specular_color = bound_below(m->specular_color);
     m->metallic = p.metallic;
     m->roughness = clamp_to_unit(m->roughness);
+    m->roughness_v = fminf(m->roughness_v, 1.0f);
+    m->anisotropy = clamp_to_unit(m->anisotropy);
+    m->sheen = p.sheen;
+    m->sheen_roughness = p.sheen_roughness;
     m->transmission = p.transmission;
     m->specular = p.specular;
     m->clearcoat = p.clearcoat;
     m->clearcoat_roughness = p.clearcoat_roughness;
     m->ior = p.ior;
-    m->alpha_u = m->alpha_v = p.alpha;
+    m->alpha_u = p.facets.alpha_u;
+    m->alpha_v = p.facets.alpha_v;
     m->dielectric_f0 = p.dielectric_f0;
     m->base_through = p.base_through;
 }
@@ -156,25 +214,31 @@ float principled_coat_reflectance(const principled_point *m, float cosine)
     return m->clearcoat * (COAT_F0 + (1.0f - COAT_F0) * fresnel_schlick_weight(cosine));
 }
 
-float principled_coat_factor(const principled_point *m, float cos_o, float cos_i)
+float principled_sheen_factor(const principled_point *m, float cos_o, float cos_i)
 {
-    if (m->clearcoat == 0.0f)
+    return fminf(coat_through(m, fabsf(cos_o)), coat_through(m, fabsf(cos_i)));
+}
+
+float principled_cover_factor(const principled_point *m, float cos_o, float cos_i)
+{
+    if (m->clearcoat == 0.0f && !m->has_sheen)
         return 1.0f;
-    /* the lesser of both ways: reciprocal, and no more than what the coat leaves of the light that comes */
+    /* the lesser of both ways: reciprocal, and no more than what coat and sheen leave of the light that comes */
     bool is_solid = principled_is_solid(m);
-    float o = is_solid && cos_o < 0.0f ? 1.0f : coat_through(m, fabsf(cos_o));
-    float i = is_solid && cos_i < 0.0f ? 1.0f : coat_through(m, fabsf(cos_i));
+    float o = is_solid && cos_o < 0.0f ? 1.0f : cover_through(m, fabsf(cos_o));
+    float i = is_solid && cos_i < 0.0f ? 1.0f : cover_through(m, fabsf(cos_i));
     return fminf(o, i);
 }
 
 principled_shares principled_shares_at(const principled_point *m, float cosine)
 {
-    ggx_albedo albedo = ggx_albedo_of(m->alpha, cosine);
-    float under_coat = coat_through(m, cosine), base = rgb_max(m->reflectance);
+    ggx_albedo albedo = ggx_albedo_of(m->facets.alpha_u, cosine);
+    float coat = coat_through(m, cosine), sheen = m->has_sheen ? 1.0f - sheen_through(m, cosine) : 0.0f;
+    float under_both = coat * (1.0f - sheen), base = rgb_max(m->reflectance);
     float dielectric = rgb_max(m->dielectric_f0) * albedo.of_f0 + m->specular * albedo.of_f90;
     float metal = base * albedo.of_f0 + albedo.of_f90, entered = base * (1.0f - dielectric);
     return (principled_shares){
-        1.0f - under_coat,
-        under_coat * (m->metallic * metal + (1.0f - m->metallic) * dielectric + through_share(m) * entered),
-        under_coat * base_share(m) * entered};
+        1.0f - coat,
+        under_both * (m->metallic * metal + (1.0f - m->metallic) * dielectric + through_share(m) * entered),
+        under_both * base_share(m) * entered, coat * sheen};
 }

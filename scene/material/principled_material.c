@@ -9,7 +9,7 @@ static bool is_traced(const scene *s, const material *m)
 {
     principled_point p = principled_point_of(m);
     (void)s;
-    return principled_has_interface(&p) || m->clearcoat > 0.0f;
+    return principled_has_interface(&p) || m->clearcoat > 0.0f || p.has_sheen;
 }
 
 static bool is_clear_glass(const scene *s, const material *m)
@@ -38,7 +38,8 @@ static bool may_be_pane(const scene *s, const material *m)
 static bool may_be_slab(const scene *s, const material *m)
 {
     (void)s;
-    return !m->is_thin && m->ior > 0.0f && m->transmission == 1.0f && m->metallic == 0.0f && m->clearcoat == 0.0f;
+    return !m->is_thin && m->ior > 0.0f && m->transmission == 1.0f && m->metallic == 0.0f && m->clearcoat == 0.0f &&
+           rgb_is_black(m->sheen);
 }
 
 /* A factor that varies goes along with the colour or against it: the mean of the product is another than the product of
@@ -50,11 +51,16 @@ static bool is_filtered(const scene *s, const material *m)
                                      (m->transmission != 0.0f && m->transmission_texture != SCENE_NO_TEXTURE) ||
                                      (m->specular != 0.0f && m->specular_texture != SCENE_NO_TEXTURE) ||
                                      m->specular_color_texture != SCENE_NO_TEXTURE ||
-                                     (m->clearcoat != 0.0f && m->clearcoat_texture != SCENE_NO_TEXTURE);
+                                     (m->clearcoat != 0.0f && m->clearcoat_texture != SCENE_NO_TEXTURE) ||
+                                     (!rgb_is_black(m->sheen) && (m->sheen_texture != SCENE_NO_TEXTURE ||
+                                                                  m->sheen_roughness_texture != SCENE_NO_TEXTURE));
     return !has_varying_factors;
 }
 
 /* --- at a point --- */
+
+/* The table rounds to 0 what the finest fibres reflect at a right angle. */
+static const float SHEEN_SHARE_MIN = 1e-4f;
 
 static void say(const material *m, material_point *p) { p->principled = principled_point_of(m); }
 
@@ -62,26 +68,33 @@ static void look_up(const material_lookup *at, const material *m, material_point
 {
     principled_point *p = &out->principled;
     rgb specular_color = m->specular_color;
-    float roughness = m->roughness;
+    float roughness = m->roughness, roughness_v = m->roughness_v, anisotropy = m->anisotropy;
     if (m->reflectance_texture != SCENE_NO_TEXTURE)
         p->reflectance =
             rgb_mul(p->reflectance, texture_filtered_rgb(at->s, m->reflectance_texture, at->hit, at->footprint));
     if (m->specular_color_texture != SCENE_NO_TEXTURE)
         specular_color = rgb_mul(specular_color, texture_evaluate_rgb(at->s, m->specular_color_texture, at->hit));
-    const uint32_t textures[] = {m->metallic_texture, m->roughness_texture, m->transmission_texture,
-                                 m->specular_texture, m->clearcoat_texture, m->clearcoat_roughness_texture};
-    float *const factors[] = {&p->metallic, &roughness,    &p->transmission,
-                              &p->specular, &p->clearcoat, &p->clearcoat_roughness};
+    if (m->sheen_texture != SCENE_NO_TEXTURE && !rgb_is_black(m->sheen))
+        p->sheen = rgb_mul(p->sheen, texture_evaluate_rgb(at->s, m->sheen_texture, at->hit));
+    const uint32_t textures[] = {m->metallic_texture,        m->roughness_texture, m->transmission_texture,
+                                 m->specular_texture,        m->clearcoat_texture, m->clearcoat_roughness_texture,
+                                 m->sheen_roughness_texture, m->anisotropy_texture};
+    float *const factors[] = {&p->metallic,        &roughness,    &p->transmission,
+                              &p->specular,        &p->clearcoat, &p->clearcoat_roughness,
+                              &p->sheen_roughness, &anisotropy};
     for (size_t i = 0; i < sizeof textures / sizeof *textures; i++)
         if (textures[i] != SCENE_NO_TEXTURE && *factors[i] != 0.0f)
             *factors[i] *= texture_evaluate_float(at->s, textures[i], at->hit);
-    principled_resolve(p, specular_color, roughness);
+    if (m->roughness_v_texture != SCENE_NO_TEXTURE && roughness_v > 0.0f)
+        roughness_v = fmaxf(0.0f, roughness_v * texture_evaluate_float(at->s, m->roughness_v_texture, at->hit));
+    p->facets = principled_facets(roughness, roughness_v, anisotropy);
+    principled_resolve(p, specular_color);
 }
 
 static bool is_pane(const material_point *m)
 {
     const principled_point *p = &m->principled;
-    return is_straight(p->is_thin, p->ior) && principled_transmits(p) && material_is_smooth(p->alpha, p->alpha);
+    return is_straight(p->is_thin, p->ior) && principled_transmits(p) && facets_are_smooth(p->facets);
 }
 
 static rgb pane_transmittance(const material_point *m, float cosine)
@@ -89,7 +102,7 @@ static rgb pane_transmittance(const material_point *m, float cosine)
     const principled_point *p = &m->principled;
     rgb reflected, through;
     principled_interface(p, fminf(fabsf(cosine), 1.0f), cosine < 0.0f && principled_is_solid(p), &reflected, &through);
-    return rgb_scale(through, principled_coat_factor(p, cosine, -cosine));
+    return rgb_scale(through, principled_cover_factor(p, cosine, -cosine));
 }
 
 static float index_of(const material_point *m) { return m->principled.ior; }
@@ -102,17 +115,22 @@ static material_faces faces(const material_point *m, float cosine, float cosine_
     return f;
 }
 
+static bool has_grain(const material_point *m) { return facets_have_grain(m->principled.facets); }
+
 static void add_lobes(bsdf *b, const surface_hit *hit)
 {
     const principled_point *m = &b->material.principled;
     (void)hit;
     float cosine = vec3_dot(b->out, b->shading.z);
     principled_shares shares = principled_shares_at(m, fminf(fabsf(cosine), 1.0f));
-    bool has_interface = principled_has_interface(m);
-    if (!rgb_is_black(principled_base_albedo(m)) || !has_interface)
+    const bool has_interface = principled_has_interface(m);
+    const bool has_sheen = m->has_sheen && !(cosine < 0.0f && principled_is_solid(m));
+    if (!rgb_is_black(principled_base_albedo(m)) || !(has_interface || has_sheen))
         bsdf_add_lobe(b, LOBE_PRINCIPLED_BASE, BSDF_GATHERED, false, shares.base);
     if (has_interface)
-        bsdf_add_lobe(b, LOBE_PRINCIPLED, BSDF_TRACED, material_is_smooth(m->alpha, m->alpha), shares.interface);
+        bsdf_add_lobe(b, LOBE_PRINCIPLED, BSDF_TRACED, facets_are_smooth(m->facets), shares.interface);
+    if (has_sheen)
+        bsdf_add_lobe(b, LOBE_SHEEN, BSDF_TRACED, false, fmaxf(shares.sheen, SHEEN_SHARE_MIN));
     float coat_alpha = m->clearcoat_roughness * m->clearcoat_roughness;
     if (m->clearcoat > 0.0f && !(cosine < 0.0f && principled_is_solid(m)))
         bsdf_add_lobe(b, LOBE_CLEARCOAT, BSDF_TRACED, material_is_smooth(coat_alpha, coat_alpha), shares.coat);
@@ -128,6 +146,7 @@ const material_type principled_material = {.init = init,
                                            .is_filtered = is_filtered,
                                            .say = say,
                                            .look_up = look_up,
+                                           .has_grain = has_grain,
                                            .is_pane = is_pane,
                                            .pane_transmittance = pane_transmittance,
                                            .index = index_of,

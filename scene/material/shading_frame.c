@@ -1,6 +1,7 @@
 /* shading_frame.c: see shading_frame.h. Threads: pure functions. */
 #include "material/shading_frame.h"
 
+#include "math/sampling.h"
 #include "scene.h"
 #include "shape/tangents.h"
 
@@ -81,6 +82,27 @@ static vec3 make_usable(vec3 v, const surface_hit *hit)
     return square > 4.0f * COSINE_MIN * COSINE_MIN ? vec3_scale(v, 1.0f / sqrtf(square)) : hit->shading_normal;
 }
 
+/* The frame whose x is the grain's, turned from that of dp/du. Mirrored uvs mirror the turn, as glTF's tangents do. */
+static frame turn(const scene *s, const surface_hit *hit, const material *m, frame f)
+{
+    vec3 dpdu, dpdv;
+    float sine, cosine;
+    sincos_turns(m->grain_turn, &sine, &cosine);
+    if (m->grain_texture != SCENE_NO_TEXTURE) {
+        const rgb c = texture_evaluate_rgb(s, m->grain_texture, hit);
+        const float x = 2.0f * c.r - 1.0f, y = 2.0f * c.g - 1.0f, length = sqrtf(x * x + y * y);
+        if (length > 0.0f && isfinite(length)) {
+            const float turned = (cosine * x - sine * y) / length;
+            sine = (sine * x + cosine * y) / length;
+            cosine = turned;
+        }
+    }
+    /* by the uvs, for a mesh's own tangents may lie in any direction among these */
+    if (surface_uv_axes(s, hit, &dpdu, &dpdv) && vec3_dot(vec3_cross(dpdu, dpdv), f.z) < 0.0f)
+        sine = -sine;
+    return frame_along(f.z, vec3_add(vec3_scale(f.x, cosine), vec3_scale(f.y, sine)));
+}
+
 frame shading_frame_at(const scene *s, const surface_hit *hit, const material *m, bool has_grain)
 {
     vec3 z = hit->shading_normal, dpdu, dpdv;
@@ -91,5 +113,6 @@ frame shading_frame_at(const scene *s, const surface_hit *hit, const material *m
     if (!has_grain)
         return frame_from_z(z);
     surface_tangents(s, hit, &dpdu, &dpdv);
-    return frame_along(z, dpdu);
+    const frame along = frame_along(z, dpdu);
+    return m->grain_turn == 0.0f && m->grain_texture == SCENE_NO_TEXTURE ? along : turn(s, hit, m, along);
 }

@@ -163,9 +163,9 @@ static void versions_and_extensions(void **state)
                       "extensionsUsed: should be an array, not an object");
     gltf_expect_warning("{" GLTF_ASSET "'extensionsUsed': ['EXT_odd', 'KHR_texture_transform', 'EXT_odd']}",
                         "extensionsUsed[0]: the extension EXT_odd is not supported, and ignored");
-    gltf_expect_warning("{" GLTF_ASSET "'extensionsRequired': ['KHR_materials_sheen'], "
-                        "'extensionsUsed': ['KHR_materials_sheen']}",
-                        "extensionsRequired[0]: the extension KHR_materials_sheen is not supported, and ignored");
+    gltf_expect_warning("{" GLTF_ASSET "'extensionsRequired': ['KHR_materials_dispersion'], "
+                        "'extensionsUsed': ['KHR_materials_dispersion']}",
+                        "extensionsRequired[0]: the extension KHR_materials_dispersion is not supported, and ignored");
     gltf_expect_error("{" GLTF_ASSET "'nodes': 3}", AG_ERROR_SCENE, "nodes: should be an array, not an integer");
     gltf_expect_warning("{" GLTF_ASSET "'animations': [{}]}", "animations: animations are not supported");
 }

@@ -99,6 +99,44 @@ static void factors(void **state)
     }
 }
 
+static void cloth_and_brushed_metal(void **state)
+{
+    (void)state;
+    write_triangle();
+    reading r = gltf_of(material_text("{'extensions': {'KHR_materials_sheen': {'sheenColorFactor': [1, 0.5, 0.25],"
+                                      "'sheenRoughnessFactor': 0.75}, 'KHR_materials_anisotropy': {"
+                                      "'anisotropyStrength': 0.5, 'anisotropyRotation': 1.5}},"
+                                      "'pbrMetallicRoughness': {'roughnessFactor': 0.5}}",
+                                      ""));
+    const material *m = only_material(&r);
+    assert_rgb(m->sheen, 1, 0.5, 0.25, 1e-6);
+    assert_near(m->sheen_roughness, 0.75, 0);
+    assert_int_equal(m->sheen_model, SHEEN_CHARLIE);
+    assert_near(m->anisotropy, 0.5, 0);
+    assert_near(m->grain_turn, 1.5 / 6.283185307, 1e-7);
+    assert_near(m->alpha_u, 0.25 + 0.75 * 0.25, 1e-6);
+    assert_near(m->alpha_v, 0.25, 0);
+    reading_destroy(&r);
+    r = gltf_of(material_text("{'extensions': {'KHR_materials_sheen': {}, 'KHR_materials_anisotropy': {}}}", ""));
+    m = only_material(&r);
+    assert_true(rgb_is_black(m->sheen) && m->anisotropy == 0.0f && m->alpha_u == m->alpha_v && !m->is_textured);
+    reading_destroy(&r);
+    write_picture("p.png");
+    r = gltf_read(material_text("{'extensions': {'KHR_materials_sheen': {'sheenColorFactor': [1, 1, 1],"
+                                "'sheenColorTexture': {'index': 0}, 'sheenRoughnessFactor': 1,"
+                                "'sheenRoughnessTexture': {'index': 0}}, 'KHR_materials_anisotropy': {"
+                                "'anisotropyStrength': 1, 'anisotropyTexture': {'index': 0}}}}",
+                                ONE_TEXTURE));
+    assert_int_equal(r.status, AG_OK);
+    m = only_material(&r);
+    assert_true(m->sheen_texture != SCENE_NO_TEXTURE && m->sheen_roughness_texture != SCENE_NO_TEXTURE);
+    assert_true(m->anisotropy_texture != SCENE_NO_TEXTURE && m->grain_texture != SCENE_NO_TEXTURE);
+    assert_int_equal(r.scene->textures[m->anisotropy_texture].channel, TEXTURE_CHANNEL_B);
+    assert_int_equal(r.scene->textures[m->sheen_roughness_texture].channel, TEXTURE_CHANNEL_A);
+    assert_true(r.scene->textures[m->grain_texture].is_data);
+    reading_destroy(&r);
+}
+
 static void alpha_modes(void **state)
 {
     (void)state;
@@ -178,8 +216,8 @@ static void warnings(void **state)
     write_triangle();
     write_picture("p.png");
     gltf_expect_warning(
-        material_text("{'extensions': {'KHR_materials_sheen': {}}}", ""),
-        "materials[0].extensions.KHR_materials_sheen: the extension KHR_materials_sheen is not supported");
+        material_text("{'extensions': {'KHR_materials_dispersion': {}}}", ""),
+        "materials[0].extensions.KHR_materials_dispersion: the extension KHR_materials_dispersion is not supported");
     gltf_expect_warning(material_text("{'pbrMetallicRoughness': {'metallicFactor': 1.5}}", ""),
                         "materials[0].pbrMetallicRoughness.metallicFactor: 1.5 is beyond [0, 1], and brought there");
     gltf_expect_warning(material_text("{'normalTexture': {'index': 0}}", "'textures': [{}],"),
@@ -293,6 +331,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         TEST_IN_FOLDER(defaults),
         TEST_IN_FOLDER(factors),
+        TEST_IN_FOLDER(cloth_and_brushed_metal),
         TEST_IN_FOLDER(alpha_modes),
         TEST_IN_FOLDER(emission),
         TEST_IN_FOLDER(specular_glossiness),

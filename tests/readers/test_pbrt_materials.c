@@ -332,6 +332,13 @@ static void errors_name_location_and_reason(void **state)
         {"\"coateddiffuse\" \"string thickness\" \"a\"", "1:37", "\"string thickness\" should be \"float thickness\""},
         {"\"principled\" \"float metallic\" 1.5", "1:34", "\"metallic\" should be from 0 to 1"},
         {"\"principled\" \"float clearcoat_roughness\" -.5", "1:34", "\"clearcoat_roughness\" should be from 0 to 1"},
+        {"\"principled\" \"rgb sheen\" [ .5 2 0 ]", "1:34", "\"sheen\" of this model should be from 0 to 1"},
+        {"\"principled\" \"rgb sheen\" [ 12 0 0 ] \"string sheen_model\" \"schlick\"", "1:34",
+         "\"sheen\" of this model should be from 0 to 11.3"},
+        {"\"principled\" \"string sheen_model\" \"wool\"", "1:34",
+         "\"sheen_model\" should be \"charlie\", \"schlick\" or \"velvet\", not \"wool\""},
+        {"\"principled\" \"float uroughness\" 2", "1:34", "\"uroughness\" should be from 0 to 1"},
+        {"\"principled\" \"float vroughness\" -1", "1:34", "\"vroughness\" should be from 0 to 1"},
         {"\"principled\" \"float ior\" .5", "1:34", "\"ior\" should be at least 1, or 0 for an infinite one"},
         {"\"coateddiffuse\" \"float g\" 1", "1:37", "\"g\" should be between -1 and 1"},
         {"\"coateddiffuse\" \"rgb albedo\" [ -1 0 0 ]", "1:37", "\"rgb albedo\" has a negative component, -1"},
@@ -442,6 +449,61 @@ static void principled_materials(void **state)
     assert_rgb(m.dielectric_f0, .5 * f0, f0, .5, 1e-6);
 }
 
+static void cloth_and_brushed_metal(void **state)
+{
+    (void)state;
+    material m = only_material("\"principled\"");
+    assert_rgb(m.sheen, 0, 0, 0, 0);
+    assert_true(m.sheen_model == SHEEN_CHARLIE && m.sheen_roughness == 0.0f && m.anisotropy == 0.0f);
+    assert_true(m.grain_turn == 0.0f && m.grain_texture == SCENE_NO_TEXTURE);
+    m = only_material("\"principled\" \"rgb sheen\" [ .1 .2 .9 ] \"float sheen_roughness\" .4 \"float anisotropy\" .5\n"
+                      "\"float roughness\" .6 \"float grain_rotation\" -30");
+    assert_rgb(m.sheen, .1, .2, .9, 1e-7);
+    assert_true(m.sheen_roughness == 0.4f && m.anisotropy == 0.5f);
+    assert_roughness(m.alpha_u, m.alpha_v, .36 + .64 * .25, .36);
+    assert_near(m.grain_turn, -30.0 / 360.0, 1e-7);
+    m = only_material("\"principled\" \"rgb sheen\" [ 3 0 11 ] \"string sheen_model\" \"schlick\"\n"
+                      "\"float uroughness\" .2 \"float vroughness\" .9");
+    assert_rgb(m.sheen, 3, 0, 11, 1e-6);
+    assert_int_equal(m.sheen_model, SHEEN_SCHLICK);
+    assert_roughness(m.alpha_u, m.alpha_v, .04, .81);
+    m = only_material(
+        "\"principled\" \"string sheen_model\" \"velvet\" \"float roughness\" .5 \"float uroughness\" .2");
+    assert_int_equal(m.sheen_model, SHEEN_VELVET);
+    assert_roughness(m.alpha_u, m.alpha_v, .04, .25);
+    m = only_material("\"principled\" \"float roughness\" .5 \"float vroughness\" .2");
+    assert_roughness(m.alpha_u, m.alpha_v, .25, .04);
+    m = only_material("\"conductor\" \"float uroughness\" .4 \"float vroughness\" .1 \"float grain_rotation\" 450");
+    assert_near(m.grain_turn, 0.25, 1e-7);
+}
+
+/* Each replaces its own: a texture along u leaves what is said for both to v. */
+static void textures_of_cloth_and_brushed_metal(void **state)
+{
+    (void)state;
+    reading r = reading_of(
+        "WorldBegin\n"
+        "Texture \"f\" \"float\" \"bilerp\" \"float v00\" .5 \"float v01\" .5 \"float v10\" .5 \"float v11\" .5\n"
+        "Texture \"g\" \"float\" \"bilerp\" \"float v00\" .7 \"float v01\" .7 \"float v10\" .7 \"float v11\" .7\n"
+        "Texture \"c\" \"spectrum\" \"bilerp\" \"rgb v00\" [ .1 .2 .3 ] \"rgb v01\" [ .1 .2 .3 ]\n"
+        "\"rgb v10\" [ .1 .2 .3 ] \"rgb v11\" [ .1 .2 .3 ]\n"
+        "Material \"principled\" \"texture sheen\" \"c\" \"texture sheen_roughness\" \"f\" \"texture uroughness\" \"g\"\n"
+        "\"texture roughness\" \"f\" \"texture anisotropy\" \"f\" Shape \"sphere\"\n"
+        "Material \"principled\" \"texture vroughness\" \"g\" \"float roughness\" .2 Shape \"sphere\"");
+    material_point point;
+    const principled_point *m = &point.principled;
+    surface_hit hit = {.uv = {0.5f, 0.5f}};
+    material_at(r.scene, &hit, &point);
+    assert_rgb(m->sheen, .1, .2, .3, 1e-6);
+    assert_near(m->sheen_roughness, .5, 0);
+    assert_roughness(m->facets.alpha_u, m->facets.alpha_v, .49 + .51 * .25, .25);
+    assert_true(material_point_has_grain(&point));
+    hit.shape_index = 1;
+    material_at(r.scene, &hit, &point);
+    assert_roughness(m->facets.alpha_u, m->facets.alpha_v, .04, .49);
+    reading_destroy(&r);
+}
+
 /* Factors that are textured start at 1; at a point they are what the texture says, and what follows from that. */
 static void principled_textures(void **state)
 {
@@ -466,12 +528,13 @@ static void principled_textures(void **state)
     assert_rgb(m->reflectance, .1, .2, .3, 1e-6);
     assert_rgb(m->dielectric_f0, .5 * .04 * .1, .5 * .04 * .2, .5 * .04 * .3, 1e-7);
     assert_true(m->metallic == 0.5f && m->transmission == 0.5f && m->specular == 0.5f);
-    assert_true(m->clearcoat == 0.5f && m->clearcoat_roughness == 0.5f && m->alpha == 0.25f);
+    assert_true(m->clearcoat == 0.5f && m->clearcoat_roughness == 0.5f && m->facets.alpha_u == 0.25f &&
+                m->facets.alpha_v == 0.25f);
     /* they multiply what is given for the whole */
     given->metallic = 0.5f, given->roughness = 0.8f, given->reflectance = rgb_gray(0.5f);
     material_at(s, &hit, &point);
     assert_true(m->metallic == 0.25f);
-    assert_near(m->alpha, .4 * .4, 1e-6);
+    assert_near(m->facets.alpha_u, .4 * .4, 1e-6);
     assert_rgb(m->reflectance, .05, .1, .15, 1e-6);
     assert_true(m->base_through > 0.5f && m->base_through < 1.0f);
     reading_destroy(&r);
@@ -494,6 +557,8 @@ int main(void)
         cmocka_unit_test(warnings_are_given_once),
         cmocka_unit_test(principled_materials),
         cmocka_unit_test(principled_textures),
+        cmocka_unit_test(cloth_and_brushed_metal),
+        cmocka_unit_test(textures_of_cloth_and_brushed_metal),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

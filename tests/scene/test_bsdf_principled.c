@@ -108,6 +108,27 @@ static void a_white_furnace(void **state)
         }
 }
 
+/* What the base gets is worked out by the axis that reflects more, for all directions about the normal. */
+static void brushed_surfaces_gain_nothing(void **state)
+{
+    (void)state;
+    double least = 2.0, most = 0.0;
+    for (int k = 0; k < 6; k++)
+        for (double degrees = 4.0; degrees < 88.0; degrees += 14.0 * FEWER)
+            for (double turn = 0.0; turn <= 90.0; turn += 30.0) {
+                static const float ROUGHNESSES[6][2] = {{0.1f, 0.5f}, {0.1f, 1.0f},  {0.3f, 0.9f},
+                                                        {0.5f, 0.8f}, {0.05f, 0.3f}, {0.9f, 0.2f}};
+                material m =
+                    along_grain(principled(0.0f, ROUGHNESSES[k][0], 0.0f, 0.0f, 0.0f), ROUGHNESSES[k][1], 0.0f);
+                m.reflectance = rgb_gray(1.0f);
+                bsdf b = flat(&m, direction_at(degrees, turn));
+                const double sum = furnace_of(&b, BSDF_ALL);
+                least = fmin(least, sum), most = fmax(most, sum);
+            }
+    print_message("from %.4f to %.4f\n", least, most);
+    assert_true(least > 0.79 && most < 1.006);
+}
+
 /* --- closed forms --- */
 
 static double schlick(double f0, double f90, double cosine) { return f0 + (f90 - f0) * pow(1.0 - cosine, 5.0); }
@@ -295,6 +316,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(nothing_gains),
         cmocka_unit_test(a_white_furnace),
+        cmocka_unit_test(brushed_surfaces_gain_nothing),
         cmocka_unit_test(metals_and_plastics_reflect_as_gltf_says),
         cmocka_unit_test(smooth_glass_thin_and_solid),
         cmocka_unit_test(a_rough_thin_wall_mirrors_its_reflection),

@@ -159,7 +159,8 @@ static void test_no_word_is_forgotten(void **state)
     scene *s = create(&r, WORLD, CAMERA);
     const size_t as = offsetof(shape, as);
 
-    WORDS_COUNT(material, &s->materials[s->material_count - 1], FIELD(material, table));
+    WORDS_COUNT(material, &s->materials[s->material_count - 1], FIELD(material, table),
+                {offsetof(material, is_lambertian) + 4, 4});
     WORDS_COUNT(texture, &s->textures[0], {0, 0});
     WORDS_COUNT(medium, &s->media[0], {0, 0});
     WORDS_COUNT(scene_instance, &s->instances[0], {0, 0});

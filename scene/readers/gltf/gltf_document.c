@@ -139,10 +139,12 @@ static extension_support find_extension(const char *name)
         extension_support support;
     } EXTENSIONS[] = {
         {"KHR_lights_punctual", KNOWN},
+        {"KHR_materials_anisotropy", KNOWN},
         {"KHR_materials_clearcoat", KNOWN},
         {"KHR_materials_emissive_strength", KNOWN},
         {"KHR_materials_ior", KNOWN},
         {"KHR_materials_pbrSpecularGlossiness", KNOWN},
+        {"KHR_materials_sheen", KNOWN},
         {"KHR_materials_specular", KNOWN},
         {"KHR_materials_transmission", KNOWN},
         {"KHR_materials_unlit", KNOWN},
@@ -152,11 +154,9 @@ static extension_support find_extension(const char *name)
         {"KHR_animation_pointer", KNOWN}, /* of animations alone */
         {"KHR_xmp", KNOWN},               /* who made it, and when */
         {"KHR_xmp_json_ld", KNOWN},
-        {"KHR_materials_anisotropy", IGNORED},
         {"KHR_materials_diffuse_transmission", IGNORED},
         {"KHR_materials_dispersion", IGNORED},
         {"KHR_materials_iridescence", IGNORED},
-        {"KHR_materials_sheen", IGNORED},
         {"KHR_materials_variants", IGNORED},
         {"KHR_node_visibility", IGNORED},
     };

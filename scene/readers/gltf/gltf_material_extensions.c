@@ -1,7 +1,7 @@
 /* gltf_material_extensions.c: the material extensions of Khronos: transmission, volume, ior, specular, clearcoat,
- * unlit, specular-glossiness. Rests on: Khronos, KHR_materials_… of glTF 2.0; KHR_materials_ior says how
- * specular-glossiness is written with an index of 0. Flow: gltf_materials -> [here] -> gltf_textures. Threads: one per
- * scene. */
+ * sheen, anisotropy, unlit, specular-glossiness. Rests on: Khronos, KHR_materials_… of glTF 2.0; KHR_materials_ior says
+ * how specular-glossiness is written with an index of 0. Flow: gltf_materials -> [here] -> gltf_textures. Threads: one
+ * per scene. */
 #include "gltf/gltf_private.h"
 
 #include <stdio.h>
@@ -9,6 +9,8 @@
 static const gltf_texture_use COLOR = {.is_color = true, .is_srgb = true, .scale = 1.0f};
 static const gltf_texture_use RED = {.channel = TEXTURE_CHANNEL_R, .scale = 1.0f};
 static const gltf_texture_use GREEN = {.channel = TEXTURE_CHANNEL_G, .scale = 1.0f};
+static const gltf_texture_use BLUE = {.channel = TEXTURE_CHANNEL_B, .scale = 1.0f};
+static const gltf_texture_use DIRECTION = {.is_color = true, .scale = 1.0f};
 static const gltf_texture_use ALPHA = {.channel = TEXTURE_CHANNEL_A, .scale = 1.0f};
 
 typedef ag_status reader(gltf_reader *r, const gltf_value *at, const gltf_value *extension, material *m,
@@ -107,6 +109,34 @@ static ag_status read_clearcoat(gltf_reader *r, const gltf_value *at, const gltf
                             &m->clearcoat_roughness_texture);
 }
 
+static ag_status read_sheen(gltf_reader *r, const gltf_value *at, const gltf_value *extension, material *m,
+                            gltf_material *out)
+{
+    (void)at;
+    AG_TRY(gltf_get_color(r, extension, "sheenColorFactor", 0.0, 1.0, &m->sheen));
+    AG_TRY(gltf_get_clamped(r, extension, "sheenRoughnessFactor", 0.0, 1.0, &m->sheen_roughness));
+    m->sheen = working_space_reflectance(&r->scene->space, m->sheen);
+    if (rgb_is_black(m->sheen))
+        return AG_OK;
+    AG_TRY(gltf_get_texture(r, extension, "sheenColorTexture", COLOR, &out->uv_set, &m->sheen_texture));
+    return gltf_get_texture(r, extension, "sheenRoughnessTexture", ALPHA, &out->uv_set, &m->sheen_roughness_texture);
+}
+
+/* Red and green of the texture are the direction before the rotation, blue is a factor of the strength. */
+static ag_status read_anisotropy(gltf_reader *r, const gltf_value *at, const gltf_value *extension, material *m,
+                                 gltf_material *out)
+{
+    double rotation = 0.0;
+    (void)at;
+    AG_TRY(gltf_get_clamped(r, extension, "anisotropyStrength", 0.0, 1.0, &m->anisotropy));
+    AG_TRY(gltf_get_double(r, extension, "anisotropyRotation", &rotation));
+    if (m->anisotropy == 0.0f)
+        return AG_OK;
+    m->grain_turn = (float)remainder(rotation / 6.283185307179586477, 1.0);
+    AG_TRY(gltf_get_texture(r, extension, "anisotropyTexture", DIRECTION, &out->uv_set, &m->grain_texture));
+    return gltf_get_texture(r, extension, "anisotropyTexture", BLUE, &out->uv_set, &m->anisotropy_texture);
+}
+
 /* A dielectric of infinite index reflects what its specular colour says, from all sides; what is left is diffuse. */
 static ag_status read_specular_glossiness(gltf_reader *r, const gltf_value *at, const gltf_value *extension,
                                           material *m, gltf_material *out)
@@ -154,9 +184,8 @@ static ag_status read_unlit(gltf_reader *r, const gltf_value *at, const gltf_val
 /* Extensions that the picture can go without are named in a warning. */
 static void warn_others(const gltf_reader *r, const gltf_value *extensions, const char *name)
 {
-    static const char *const OTHERS[] = {"KHR_materials_anisotropy", "KHR_materials_diffuse_transmission",
-                                         "KHR_materials_dispersion", "KHR_materials_iridescence",
-                                         "KHR_materials_sheen"};
+    static const char *const OTHERS[] = {"KHR_materials_diffuse_transmission", "KHR_materials_dispersion",
+                                         "KHR_materials_iridescence"};
     for (size_t i = 0; i < sizeof OTHERS / sizeof *OTHERS; i++) {
         gltf_value v = gltf_member(extensions, OTHERS[i]);
         if (v.json)
@@ -206,6 +235,8 @@ ag_status gltf_read_material_extensions(gltf_reader *r, const gltf_value *at, ma
         {"KHR_materials_transmission", read_transmission},
         {"KHR_materials_volume", read_volume},
         {"KHR_materials_clearcoat", read_clearcoat},
+        {"KHR_materials_sheen", read_sheen},
+        {"KHR_materials_anisotropy", read_anisotropy},
         {"KHR_materials_unlit", read_unlit}, /* the last: replaces all */
     };
     gltf_value extensions, extension;

@@ -387,28 +387,40 @@ static ag_status read_measured(pbrt_parser *parser, parameter_list *list, materi
     return parameter_get_string(list, parser->log, "filename", &ignored);
 }
 
-/* The parameters that tilt the shading normal, which all kinds have. */
+/* The parameters that tilt the shading normal, and turn the grain, which all kinds have. */
 
-static ag_status read_normal_map(pbrt_parser *parser, parameter_list *list, material *m)
+/* A picture of directions, as 2 c - 1 of its colours; key: the parameter that has its name. */
+static ag_status read_direction_map(pbrt_parser *parser, parameter_list *list, const char *key, const char *what,
+                                    uint32_t *out_texture)
 {
     const char *name = NULL;
-    AG_TRY(parameter_get_string(list, parser->log, "normalmap", &name));
+    AG_TRY(parameter_get_string(list, parser->log, key, &name));
     if (!name || *name == '\0')
         return AG_OK;
     texture t = texture_make(TEXTURE_IMAGE);
     t.is_data = true;
     t.is_spectrum = true;
-    AG_TRY(pbrt_load_image(parser, list, "normalmap", name, (image_encoding){.curve = IMAGE_CURVE_LINEAR}, &t));
+    AG_TRY(pbrt_load_image(parser, list, key, name, (image_encoding){.curve = IMAGE_CURVE_LINEAR}, &t));
     if (parser->scene->texture_images[t.image_index]->channel_count < 3)
-        return pbrt_refuse(parser, list, "normalmap", "\"%s\" is no normal map: it has no red, green and blue", name);
-    return scene_add_texture(parser->scene, &t, &m->normal_map_texture);
+        return pbrt_refuse(parser, list, key, "\"%s\" is no %s: it has no red, green and blue", name, what);
+    return scene_add_texture(parser->scene, &t, out_texture);
+}
+
+/* The direction of "uroughness", which pbrt leaves at dp/du. */
+static ag_status read_grain(pbrt_parser *parser, parameter_list *list, material *m)
+{
+    float degrees = 0.0f;
+    AG_TRY(parameter_get_float(list, parser->log, "grain_rotation", &degrees));
+    m->grain_turn = (float)remainder((double)degrees / 360.0, 1.0);
+    return read_direction_map(parser, list, "grainmap", "map of directions", &m->grain_texture);
 }
 
 ag_status pbrt_read_maps(pbrt_parser *parser, parameter_list *list, material *m)
 {
     float same_everywhere = 0.0f; /* which tilts nothing */
     AG_TRY(pbrt_get_float_texture(parser, list, "displacement", &same_everywhere, &m->displacement_texture));
-    AG_TRY(read_normal_map(parser, list, m));
+    AG_TRY(read_direction_map(parser, list, "normalmap", "normal map", &m->normal_map_texture));
+    AG_TRY(read_grain(parser, list, m));
     if (m->displacement_texture != SCENE_NO_TEXTURE && m->normal_map_texture != SCENE_NO_TEXTURE)
         log_at_once(parser->log, AG_LOG_WARNING, list->where, "both maps",
                     "of \"displacement\" and \"normalmap\" together only the latter is used");
