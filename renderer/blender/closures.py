@@ -104,6 +104,53 @@ def _constant(baker, node, name, path):
     return float(np.mean(values))
 
 
+def _at_one_size(*values):
+    """Numbers and colours with a last axis of 1 or 3 channels, and with the rows and columns of the largest picture among
+    them; those that are the same all over have none."""
+    made = [v[..., None] if v.ndim % 2 == 0 else v for v in map(np.asarray, values)]
+    largest = max(made, key=lambda v: v[..., 0].size)
+    return [v if v.ndim == 1 else _stretched(v, largest)[0] for v in made]
+
+
+def _has_any(baker, socket, path):
+    return bool((np.abs(baker.bake(socket, path, False)) > 1e-4).any())
+
+
+def _sheen(baker, inputs, path):
+    """Cycles' sheen, which is Burley's: what metal and glass leave of it, tinted by the base colour's hue."""
+    if not _has_any(baker, inputs["Sheen"], path):
+        return {}, 0.0
+    amount, tint, metallic, transmission = (baker.bake(inputs[name], path, False) for name in (
+        "Sheen", "Sheen Tint", "Metallic", "Transmission"))
+    amount, tint, metallic, transmission, color = _at_one_size(
+        amount, tint, np.clip(metallic, 0, 1), np.clip(transmission, 0, 1), baker.bake(inputs["Base Color"], path, True))
+    brightness = (color * materials.LUMA).sum(axis=-1, keepdims=True)
+    hue = np.where(brightness > 0, color / np.maximum(brightness, 1e-30), 1.0)
+    sheen = amount * (1 - metallic) * (1 - transmission) * (1 - tint + tint * hue)
+    made = baker.parameter("sheen", sheen, True, 0.0, materials.SHEEN_MOST)
+    return {**made, "string sheen_model": "schlick"}, materials.SHEEN_ALBEDO * float(np.mean(sheen.max(axis=-1)))
+
+
+def _grain(baker, inputs, path, name):
+    """By how much a shader's tangent is turned."""
+    turns = baker.bake(inputs[name], path, False)
+    if turns.ndim == 0:
+        return {"float grain_rotation": 360.0 * float(turns)} if turns else {}
+    angles = 2 * np.pi * turns
+    return {"string grainmap": baker.image(0.5 + 0.5 * np.stack([np.cos(angles), np.sin(angles), 0 * angles], -1))}
+
+
+def _brushed(baker, inputs, path):
+    """Cycles' roughness along the tangent and across it, of a Principled BSDF."""
+    if not _has_any(baker, inputs["Anisotropic"], path):
+        return baker.number("roughness", inputs["Roughness"], path)
+    roughness, amount = _at_one_size(*(baker.bake(inputs[name], path, False) for name in ("Roughness", "Anisotropic")))
+    root = (1 - 0.9 * np.clip(amount, 0, 1)) ** 0.25
+    return {**baker.parameter("uroughness", (roughness / root)[..., 0], False, 0.0, 1.0),
+            **baker.parameter("vroughness", (roughness * root)[..., 0], False, 0.0, 1.0),
+            **_grain(baker, inputs, path, "Anisotropic Rotation")}
+
+
 def _say_left_out(baker, node, names, path):
     for name in names:
         if node.inputs[name].is_linked or float(np.mean(baker.bake(node.inputs[name], path, False))) > 1e-4:
@@ -117,15 +164,16 @@ def _emission(baker, color, strength, path):
 
 def _principled(baker, node, path):
     """The base below Cycles' interface is as bright as without it, ours is lit by what the interface lets in: it is made
-    brighter by that, so that both are as bright in all."""
+    brighter by that, and by what a sheen takes, so that both are as bright in all."""
     inputs = node.inputs
     specular = _constant(baker, node, "Specular", path)
     is_glass = np.mean(baker.bake(inputs["Transmission"], path, False)) > 0.5
+    sheen, taken = _sheen(baker, inputs, path)
     lost = 0.0 if is_glass else (1 - np.mean(baker.bake(inputs["Metallic"], path, False))) * (
         materials.reflected_by_interface(specular, np.mean(baker.bake(inputs["Roughness"], path, False))))
-    parameters = baker.color("reflectance", inputs["Base Color"], path, 1 / (1 - lost))
+    parameters = {**sheen, **baker.color("reflectance", inputs["Base Color"], path, 1 / ((1 - lost) * (1 - taken)))}
     parameters.update(baker.number("metallic", inputs["Metallic"], path))
-    parameters.update(baker.number("roughness", inputs["Roughness"], path))
+    parameters.update(_brushed(baker, inputs, path))
     parameters.update(baker.number("transmission", inputs["Transmission"], path))
     parameters.update(baker.number("clearcoat", inputs["Clearcoat"], path, change=lambda v: 0.25 * v))
     parameters.update(baker.number("clearcoat_roughness", inputs["Clearcoat Roughness"], path))
@@ -136,7 +184,7 @@ def _principled(baker, node, path):
         parameters["float ior"] = materials.index_of_specular(specular)
     else:
         parameters.update({"float ior": 1.0, "float specular": 0.0})
-    _say_left_out(baker, node, ("Subsurface", "Anisotropic", "Sheen", "Specular Tint"), path)
+    _say_left_out(baker, node, ("Subsurface", "Specular Tint"), path)
     parameters.update(_maps(baker, node, path))
     alpha = baker.bake(inputs["Alpha"], path, False)
     return Surface("principled", parameters, alpha=alpha if (alpha < 1).any() else None,
@@ -154,6 +202,29 @@ def _glossy(baker, node, path):
     parameters["bool remaproughness"] = False
     parameters.update(_maps(baker, node, path))
     return Surface("conductor", parameters)
+
+
+def _anisotropic(baker, node, path):
+    """Unlike a Principled BSDF, one that is above 0 is smoother along the tangent."""
+    parameters = _glossy(baker, node, path).parameters
+    if node.distribution == "SHARP" or not _has_any(baker, node.inputs["Anisotropy"], path):
+        return Surface("conductor", parameters)
+    roughness, amount = _at_one_size(*(baker.bake(node.inputs[name], path, False) for name in ("Roughness", "Anisotropy")))
+    alpha, amount = materials.roughness_squared(roughness), np.clip(amount, -0.99, 0.99)
+    small, large = alpha * (1 - np.abs(amount)), np.minimum(alpha / (1 - np.abs(amount)), 1)
+    for name in ("float roughness", "texture roughness"):
+        parameters.pop(name, None)
+    parameters.update(baker.parameter("uroughness", np.where(amount > 0, small, large)[..., 0], False))
+    parameters.update(baker.parameter("vroughness", np.where(amount > 0, large, small)[..., 0], False))
+    parameters.update(_grain(baker, node.inputs, path, "Rotation"))
+    return Surface("conductor", parameters)
+
+
+def _velvet(baker, node, path):
+    return Surface("principled", {
+        "rgb reflectance": (0, 0, 0), "float metallic": 0, "float specular": 0, "float ior": 1.0, "bool is_thin": False,
+        "string sheen_model": "velvet", **baker.color("sheen", node.inputs["Color"], path),
+        **baker.number("sheen_roughness", node.inputs["Sigma"], path), **_maps(baker, node, path)})
 
 
 def _glass(baker, node, path):
@@ -296,14 +367,43 @@ def _holdout(baker, node, path):
     return Surface()
 
 
-def _sheen(baker, node, path):
-    return _subsurface(baker, node, path)
-
-
 _SHADERS = {
     "BSDF_PRINCIPLED": _principled, "BSDF_DIFFUSE": _diffuse, "BSDF_GLOSSY": _glossy, "BSDF_GLASS": _glass,
     "BSDF_REFRACTION": _refraction, "BSDF_TRANSLUCENT": _translucent, "BSDF_TRANSPARENT": _transparent,
-    "BSDF_ANISOTROPIC": _glossy, "BSDF_VELVET": _sheen, "BSDF_TOON": _sheen, "SUBSURFACE_SCATTERING": _subsurface,
+    "BSDF_ANISOTROPIC": _anisotropic, "BSDF_VELVET": _velvet, "BSDF_TOON": _subsurface, "SUBSURFACE_SCATTERING": _subsurface,
     "BSDF_HAIR": _hair, "BSDF_HAIR_PRINCIPLED": _hair, "EMISSION": _shines,
     "MIX_SHADER": _mix, "ADD_SHADER": _add, "HOLDOUT": _holdout,
 }
+
+
+_ANISOTROPIC = {"BSDF_PRINCIPLED": "Anisotropic", "BSDF_ANISOTROPIC": "Anisotropy"}
+
+
+def _brushed_shaders(tree):
+    for node in tree.nodes:
+        if node.type == "GROUP" and node.node_tree:
+            yield from _brushed_shaders(node.node_tree)
+        elif node.type in _ANISOTROPIC:
+            amount = node.inputs[_ANISOTROPIC[node.type]]
+            if amount.is_linked or abs(amount.default_value) > 1e-4:
+                yield node
+
+
+def tangent_of(material, notes):
+    """Along which direction the material's shaders are brushed: ("RADIAL", axis) about an axis of the Generated coordinates,
+    as Cycles has it unless a Tangent node says otherwise, or ("UV", name of the map); None: no shader is."""
+    found = []
+    for shader in _brushed_shaders(material.node_tree):
+        output, _, _ = source(shader.inputs["Tangent"], ())
+        if output is None or output.node.type != "TANGENT":
+            if output is not None:
+                notes.say(f'material "{material.name_full}": node "{output.node.bl_label}" is not translated: the tangent is '
+                          "radial")
+            found.append(("RADIAL", 2))
+        elif output.node.direction_type == "UV_MAP":
+            found.append(("UV", output.node.uv_map))
+        else:
+            found.append(("RADIAL", "XYZ".index(output.node.axis)))
+    if len(set(found)) > 1:
+        notes.say(f'material "{material.name_full}": its shaders are brushed along several tangents: the first counts')
+    return found[0] if found else None

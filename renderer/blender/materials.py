@@ -16,8 +16,14 @@ _SHEET_MOST = 4096
 IN_SPACE = "IN_SPACE"  # a layout: each part of a mesh has textures of its own (atlas.py)
 
 # What a mesh's part needs: the material's name, parameters of the shape (alpha), those of its light or None, how its
-# pictures lie (meshes.py), and the medium within or None.
-Look = namedtuple("Look", "name shape light layout medium", defaults=(None,))
+# pictures lie (meshes.py), the medium within or None, and the tangent that it is brushed along or None (closures.py).
+Look = namedtuple("Look", "name shape light layout medium tangent", defaults=(None, None))
+
+LUMA = np.array([0.2126, 0.7152, 0.0722])
+
+# Of a sheen that goes by Schlick's approximation: the largest factor with which it reflects no more than it gets, and the
+# share that it reflects of even light with a factor of 1.
+SHEEN_MOST, SHEEN_ALBEDO = 11.3, 0.0110
 
 
 class MaterialSheet(Sheet):
@@ -195,7 +201,9 @@ class Materials:
         if key not in self._wants_space:
             output = material.node_tree.get_output_node("CYCLES")
             self._wants_space[key] = output is not None and Graph(key, self._notes).has_procedural(output.inputs["Surface"])
-        return Look(key, material, None, IN_SPACE) if self._wants_space[key] else self.look(material)
+        if not self._wants_space[key]:
+            return self.look(material)
+        return Look(key, material, None, IN_SPACE, tangent=closures.tangent_of(material, self._notes))
 
     def look_in_space(self, look, part, pixels):
         """The look of one part, and the part with coordinates by its atlas, of about so many pixels."""
@@ -226,7 +234,7 @@ class Materials:
             self._scene.material(baker.name, "diffuse", {"rgb reflectance": (0, 0, 0)})
             return Look(baker.name, {}, None, None)
         baker.look_for_layout(output.inputs["Surface"])
-        return self._translate(baker, output)
+        return self._translate(baker, output)._replace(tangent=closures.tangent_of(material, self._notes))
 
     def _translate(self, baker, output):
         if output.inputs["Displacement"].is_linked:

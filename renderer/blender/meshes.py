@@ -11,8 +11,8 @@ from .materials import IN_SPACE
 SURFACES = {"MESH", "CURVE", "SURFACE", "FONT", "META"}
 
 # positions, normals: (count, 3), or of a mesh that deforms (steps, count, 3), and then at_frame has those of the frame, else
-# None. corners: of a part whose textures are made in space, else None.
-Part = namedtuple("Part", "slot positions triangles normals uvs corners at_frame", defaults=(None, None))
+# None. corners: of a part whose textures are made in space, else None. tangents: (count, 3) of one that is brushed, or None.
+Part = namedtuple("Part", "slot positions triangles normals uvs corners at_frame tangents", defaults=(None, None, None))
 
 # A mesh at one time: positions of its vertices, normals of its loops (or None), and the vertices of the loops.
 Pose = namedtuple("Pose", "positions normals loop_vertices")
@@ -74,6 +74,29 @@ def _faces_of_loops(mesh, loop_count):
     return face_of
 
 
+def _tangents(mesh, how, positions, loop_vertices, triangles):
+    """Of the loops, not yet along the surface, into which the renderer turns them; how: as closures.tangent_of gives it, or
+    None. Around an axis they are Cycles'; of a map they are the means around a vertex of those of its triangles whose map is
+    not mirrored, or that of the others."""
+    if how is None:
+        return None
+    if how[0] == "RADIAL":
+        along = np.zeros((len(positions), 3), np.float32)
+        ahead, aside = (how[1] + 1) % 3, (how[1] + 2) % 3
+        centred = _generated(positions) - 0.5
+        along[:, ahead], along[:, aside] = -centred[:, aside], centred[:, ahead]
+        return along[loop_vertices]
+    corners, uvs = positions[loop_vertices[triangles]].astype(np.float64), _uvs(mesh, how[1])[triangles].astype(np.float64)
+    edges, sides = corners[:, 1:] - corners[:, :1], uvs[:, 1:] - uvs[:, :1]
+    area = sides[:, 0, 0] * sides[:, 1, 1] - sides[:, 1, 0] * sides[:, 0, 1]
+    along = _unit((edges[:, 0] * sides[:, 1, 1:] - edges[:, 1] * sides[:, 0, 1:]) * np.sign(area)[:, None])
+    keys = 2 * loop_vertices[triangles] + (area < 0)[:, None]
+    sums = np.stack([np.bincount(keys.ravel(), np.repeat(along[:, axis], 3), 2 * len(positions)) for axis in range(3)], -1)
+    made = np.zeros((len(loop_vertices), 3), np.float32)
+    made[triangles] = _unit(sums)[keys]
+    return made
+
+
 def _unit(vectors):
     return vectors / np.maximum(np.linalg.norm(vectors, axis=-1, keepdims=True), 1e-30)
 
@@ -133,30 +156,31 @@ class _Vertices:
             self._moving = (np.stack([pose.positions for pose in poses]),
                             None if normals is None else np.stack([pose.normals for pose in poses]))
 
-    def part(self, slot, vertices, loops, triangles, uvs, corners=None):
-        """Of these vertices and loops, in this order."""
+    def part(self, slot, vertices, loops, triangles, uvs, corners=None, tangents=None):
+        """Of these vertices and loops, in this order; tangents: of all loops."""
         def chosen(values):
             positions, normals = values
             return positions[..., vertices, :], None if normals is None else normals[..., loops, :]
 
         positions, normals = chosen(self._moving or self._at_frame)
         return Part(int(slot), positions, triangles.astype(np.int32), normals, uvs, corners,
-                    chosen(self._at_frame) if self._moving else None)
+                    chosen(self._at_frame) if self._moving else None, None if tangents is None else tangents[loops])
 
 
-def _part_in_space(mesh, slot, chosen, positions, loop_vertices, vertices_of):
+def _part_in_space(mesh, slot, chosen, positions, loop_vertices, vertices_of, tangents):
     """No two triangles have a vertex in common."""
     vertices = loop_vertices[chosen]
     uvs = {layer.name: _array(layer.data, "uv", 2, np.float32)[chosen] for layer in mesh.uv_layers}
     uvs[""] = _uvs(mesh, "")[chosen]
     corners = Corners(positions[vertices], _generated(positions)[vertices], uvs)
-    return vertices_of.part(slot, vertices.ravel(), chosen.ravel(), np.arange(chosen.size).reshape(-1, 3), None, corners)
+    return vertices_of.part(slot, vertices.ravel(), chosen.ravel(), np.arange(chosen.size).reshape(-1, 3), None, corners,
+                            tangents)
 
 
-def parts_of(mesh, layouts, poses=None):
+def parts_of(mesh, layouts, poses=None, tangents=()):
     """The parts of an evaluated mesh, and whether they are as it was asked. layouts: for each material slot how its pictures
     are laid out (see _layout), or IN_SPACE. poses: of the mesh from the opening of the shutter to its closing; where they
-    are not of this mesh the parts are at rest, which is not as it was asked."""
+    are not of this mesh the parts are at rest, which is not as it was asked. tangents: for each slot as _tangents takes it."""
     mesh.calc_loop_triangles()
     if not mesh.loop_triangles:
         return [], True
@@ -171,16 +195,18 @@ def parts_of(mesh, layouts, poses=None):
     slots = np.clip(slots, 0, max(len(layouts) - 1, 0))
     for slot in np.unique(slots):
         chosen = triangles[slots == slot]
+        along = _tangents(mesh, tangents[slot] if tangents else None, positions, loop_vertices, triangles)
         if layouts and layouts[slot] == IN_SPACE:
-            parts.append(_part_in_space(mesh, slot, chosen, positions, loop_vertices, vertices_of))
+            parts.append(_part_in_space(mesh, slot, chosen, positions, loop_vertices, vertices_of, along))
             continue
         uvs = _layout(mesh, layouts[slot] if layouts else None, positions, loop_vertices)
-        if normals is None and uvs is None:
+        if normals is None and uvs is None and along is None:
             used, indices = np.unique(loop_vertices[chosen], return_inverse=True)
             parts.append(vertices_of.part(slot, used, None, indices, None))
             continue
         used, indices = np.unique(chosen, return_inverse=True)
-        parts.append(vertices_of.part(slot, loop_vertices[used], used, indices, None if uvs is None else uvs[used]))
+        parts.append(vertices_of.part(slot, loop_vertices[used], used, indices, None if uvs is None else uvs[used],
+                                      tangents=along))
     return parts, agree
 
 
@@ -199,6 +225,9 @@ def parameters_of(part):
         parameters["integer motionsteps"] = len(part.positions)
     if part.normals is not None:
         parameters["normal N"] = part.normals
+    if part.tangents is not None:
+        steps = len(part.positions) if part.positions.ndim == 3 else 1
+        parameters["vector3 S"] = np.tile(part.tangents, (steps, 1))
     if part.uvs is not None:
         parameters["point2 uv"] = part.uvs
     return parameters

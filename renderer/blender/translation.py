@@ -26,6 +26,8 @@ def _look_list(owner, materials):
 
 
 def _has_generated(look):
+    if look.tangent and look.tangent[0] == "RADIAL":
+        return True
     return look.layout == IN_SPACE or (look.layout is not None and look.layout[0][0] == "GENERATED")
 
 
@@ -62,7 +64,7 @@ def _model(instance_object, materials, name, notes, pixels_of, poses):
     if mesh is None:
         return None
     try:
-        parts, agree = meshes.parts_of(mesh, [look.layout for look in looks], poses)
+        parts, agree = meshes.parts_of(mesh, [look.layout for look in looks], poses, [look.tangent for look in looks])
     finally:
         instance_object.to_mesh_clear()
     if not agree:
