@@ -24,7 +24,7 @@ float sheen_value(sheen_model model, float roughness, vec3 o, vec3 i);
 
 /* Returns the share of light at a cosine in [0, 1] to the normal that is reflected in all, at most 1 /
  * sheen_factor_max. It is within 0.01 of the integral of sheen_value where the cosine is above 0.02, but for
- * SHEEN_CHARLIE below a roughness of 0.3, where it is no less than that. */
+ * SHEEN_CHARLIE below a roughness of 0.3, where it is an upper bound. */
 float sheen_albedo(sheen_model model, float roughness, float cosine);
 
 /* Returns the largest factor by which the lobe may be multiplied: with it none reflects more light than it gets. */

@@ -56,11 +56,11 @@ static void schlick_has_a_closed_form(void **state)
     }
 }
 
-/* With o straight up, D, whose integral over projected area is 1 by its own closed form, and the fitted masking. */
+/* One pair of directions by the extension's own formulas, in double. */
 static void charlie_is_khronoss(void **state)
 {
     (void)state;
-    /* KHR_materials_sheen by its own formulas, for a roughness of 0.6 and cosines of 0.8 and 0.3 in one plane */
+    /* a roughness of 0.6, and cosines of 0.8 and 0.3 in one plane */
     const double alpha = 0.36, t = (1.0 - alpha) * (1.0 - alpha);
     const double a = 21.5473 + (25.3245 - 21.5473) * t, b = 3.82987 + (3.32435 - 3.82987) * t,
                  c = 0.19823 + (0.16801 - 0.19823) * t, d = -1.97760 + (1.97760 - 1.27393) * t,
