@@ -1,5 +1,5 @@
 # Who makes the package is its maintainer, named as for Debian's own tools (debchange(1)): $DEBFULLNAME and $DEBEMAIL, else
-# $EMAIL. CPack reads this when it begins.
+# $EMAIL, which may be "NAME <ADDRESS>". CPack reads this when it begins.
 set(name "The Afterglow authors")
 if(NOT "$ENV{DEBFULLNAME}" STREQUAL "")
   set(name "$ENV{DEBFULLNAME}")
@@ -8,6 +8,12 @@ set(mail root@localhost)
 foreach(variable EMAIL DEBEMAIL)
   if(NOT "$ENV{${variable}}" STREQUAL "")
     set(mail "$ENV{${variable}}")
+    if(mail MATCHES "^(.*[^ ]) *<(.*)>$")
+      set(mail "${CMAKE_MATCH_2}")
+      if("$ENV{DEBFULLNAME}" STREQUAL "")
+        set(name "${CMAKE_MATCH_1}")
+      endif()
+    endif()
   endif()
 endforeach()
 if(mail STREQUAL root@localhost)

@@ -15,6 +15,18 @@ source "$(dirname "${BASH_SOURCE[0]}")/../fixtures/installed_tree.sh"
 # shellcheck source=tests/fixtures/python.sh
 source "$(dirname "${BASH_SOURCE[0]}")/../fixtures/python.sh"
 
+# The maintainer may be named in one variable or in two.
+echo "include($(dirname "${BASH_SOURCE[0]}")/../../renderer/package/package_maintainer.cmake)
+message(\"\${CPACK_PACKAGE_CONTACT}\")" >maintainer.cmake
+expect_maintainer() { # NAME MAIL EXPECTED
+    local is
+    is=$(DEBFULLNAME=$1 DEBEMAIL=$2 cmake -P maintainer.cmake 2>&1)
+    [[ $is == "$3" ]] || fail "DEBFULLNAME '$1' and DEBEMAIL '$2' give '$is', not '$3'"
+}
+expect_maintainer "" "Ann Packager <ann@example.org>" "Ann Packager <ann@example.org>"
+expect_maintainer "Bea Builder" "Ann Packager <ann@example.org>" "Bea Builder <ann@example.org>"
+expect_maintainer "Bea Builder" bea@example.org "Bea Builder <bea@example.org>"
+
 export DEBFULLNAME="Ann Packager" DEBEMAIL=ann@example.org SOURCE_DATE_EPOCH=1700000000
 cpack -G DEB --config "$AFTERGLOW_BUILD_DIR/CPackConfig.cmake" -B "$folder/made" >cpack.log 2>&1 ||
     fail "cpack: $(<cpack.log)"
