@@ -11,7 +11,7 @@ need blender oiiotool
 # shellcheck source=tests/fixtures/blender_test.sh
 source "$(dirname "${BASH_SOURCE[0]}")/../fixtures/blender_test.sh"
 
-timeout 900 blender -b --factory-startup --python-exit-code 1 -P "$root/tests/fixtures/blender_addon.py" -- \
+timeout 1500 blender -b --factory-startup --python-exit-code 1 -P "$root/tests/fixtures/blender_addon.py" -- \
     "$AFTERGLOW_BUILD_DIR/afterglow-blender.zip" "$folder" >blender.log 2>&1 || {
     tail -40 blender.log
     fail "blender ends with an error"
