@@ -451,6 +451,8 @@ ag_status scene_commit(scene *s, run_context *run, const char *isa)
         s->has_interfaces = s->has_interfaces || material_may_be_interface(s, s->shapes[i].material_index);
         s->has_panes = s->has_panes || pane_may_be_of(s, s->shapes[i].material_index);
     }
+    for (uint32_t i = 0; i < s->medium_count; i++)
+        s->has_scattering_media = s->has_scattering_media || medium_scatters(&s->media[i]);
     if (status == AG_OK)
         status = list_object_shapes(s);
     if (status == AG_OK)

@@ -9,7 +9,7 @@
 #include "color/working_space.h"
 #include "light/light.h"
 #include "material/material.h"
-#include "medium.h"
+#include "medium/medium.h"
 #include "run_context.h"
 #include "scene_hints.h"
 #include "scene_names.h"
@@ -92,9 +92,10 @@ typedef struct scene {
     rgb light_power;     /* W, of all lights */
     uint32_t *infinite_lights; /* [infinite_light_count], indices of those of kind LIGHT_INFINITE */
     uint32_t infinite_light_count;
-    bool filters_textures; /* any of them: see material_mips.h */
-    bool has_interfaces;   /* any shape that rays may pass unbent: see transmittance.h */
-    bool has_panes;        /* any shape that lets light straight through: see pane.h, slab_faces.h */
+    bool filters_textures;     /* any of them: see material_mips.h */
+    bool has_scattering_media; /* any medium scatters light: see transmittance_travel */
+    bool has_interfaces;       /* any shape that rays may pass unbent: see transmittance.h */
+    bool has_panes;            /* any shape that lets light straight through: see pane.h, slab_faces.h */
     /* Data for picking lights: see light_pick.c. */
     uint32_t lit_count;          /* lights with power */
     uint32_t only_light;         /* where there is but one of them, that one */

@@ -210,8 +210,11 @@ hash128 scene_hash_of_light(const scene *s)
     for (uint32_t i = 0; i < s->material_count; i++)
         add_material(h, &s->materials[i]);
     ADD(s->medium_count);
-    for (uint32_t i = 0; i < s->medium_count; i++)
+    for (uint32_t i = 0; i < s->medium_count; i++) {
         ADD(s->media[i].sigma_a);
+        ADD(s->media[i].sigma_s);
+        ADD(s->media[i].g);
+    }
     ADD(s->shape_count);
     for (uint32_t i = 0; i < s->shape_count; i++)
         add_shape(h, &s->shapes[i]);

@@ -130,7 +130,7 @@ static float flux_correction(const bsdf *b, vec3 direction)
 static float rough_flux_factor(const bsdf *b, const bsdf_lobe_type *type, vec3 direction)
 {
     bool is_fibre = type->side == LOBE_BY_FIBRE;
-    if (type->albedo || (is_fibre && b->material.hair.surface == HAIR_FACES_RAYS))
+    if (type->albedo || type->side == LOBE_BY_MEDIUM || (is_fibre && b->material.hair.surface == HAIR_FACES_RAYS))
         return 1.0f;
     if (!is_fibre)
         return flux_correction(b, direction);
@@ -178,7 +178,8 @@ static bool is_on_its_side(const bsdf *b, const bsdf_lobe_type *type, vec3 direc
     case LOBE_REFLECTS: return bsdf_is_same_side(b, direction);
     case LOBE_TRANSMITS: return !bsdf_is_same_side(b, direction);
     case LOBE_BY_FACETS: return !b->is_tilted || bsdf_is_same_side(b, direction) == (o.z * i.z > 0.0f);
-    case LOBE_BY_FIBRE: break;
+    case LOBE_BY_FIBRE:
+    case LOBE_BY_MEDIUM: break;
     }
     return true;
 }

@@ -51,7 +51,8 @@ typedef enum bsdf_transport { BSDF_RADIANCE, BSDF_FLUX } bsdf_transport;
     X(LOBE_HAIR, bsdf_lobe_hair)                                 /* all light of a fibre (hair.h) */                   \
     X(LOBE_PRINCIPLED, bsdf_lobe_principled) /* of metal and dielectric: reflection, and straight or refracted */      \
     X(LOBE_CLEARCOAT, bsdf_lobe_clearcoat)   /* reflection by the coat of the principled one */                        \
-    X(LOBE_SHEEN, bsdf_lobe_sheen)           /* reflection by the fibres of cloth (sheen.h) */
+    X(LOBE_SHEEN, bsdf_lobe_sheen)           /* reflection by the fibres of cloth (sheen.h) */                         \
+    X(LOBE_PHASE, bsdf_lobe_phase)           /* of a point in a medium (phase_function.h) */
 
 typedef enum bsdf_lobe_kind {
 #define BSDF_LOBE_ENUM(kind, type) kind,
@@ -99,6 +100,9 @@ void bsdf_init(const scene *s, const surface_hit *hit, vec3 out, bsdf *out_bsdf)
 /* bsdf_init from a material's values, about the hit's own shading normal, without a map that tilts it or a grain that
  * turns it. */
 void bsdf_init_of(const material_point *m, const surface_hit *hit, vec3 out, bsdf *out_bsdf);
+/* The bsdf of a point in a medium: one traced lobe, the phase function, whose value has no cosine. How much the medium
+ * scatters is in the weight of the ray that has met the point. */
+void bsdf_init_in_medium(const medium *m, vec3 out, bsdf *out_bsdf);
 
 bool bsdf_has(const bsdf *b, bsdf_lobes lobes);
 

@@ -80,6 +80,17 @@ void bsdf_init_of(const material_point *m, const surface_hit *hit, vec3 out, bsd
     set_up(out_bsdf, frame_from_z(hit->shading_normal), false, hit, out);
 }
 
+void bsdf_init_in_medium(const medium *m, vec3 out, bsdf *b)
+{
+    b->material.kind = MATERIAL_INTERFACE;
+    b->material.phase = (phase_point){m->g};
+    b->shading = frame_from_z(out);
+    b->geometric_normal = b->out = out;
+    b->is_tilted = b->is_pane = false;
+    b->lobe_count = 0;
+    bsdf_add_lobe(b, LOBE_PHASE, BSDF_TRACED, false, 1.0f);
+}
+
 /* Combines both faces of a slab and the medium between them into one hit. */
 static void make_slab(const scene *s, const surface_hit *hit, bsdf *b)
 {

@@ -16,7 +16,8 @@ typedef enum bsdf_lobe_side {
      * with smooth normals such light leaves again elsewhere. Where a map tilts the normal (is_tilted of a bsdf), both
      * normals must agree on whether it is a reflection. */
     LOBE_BY_FACETS,
-    LOBE_BY_FIBRE /* in all directions, whatever the normals */
+    LOBE_BY_FIBRE, /* in all directions, whatever the normals */
+    LOBE_BY_MEDIUM /* in all directions; there are no normals */
 } bsdf_lobe_side;
 
 /* A kind of lobe. o, i: out and the other direction in the shading frame. */

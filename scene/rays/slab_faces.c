@@ -73,6 +73,12 @@ static bool is_counterpart(const scene *s, const surface_hit *in, const surface_
            FLAT_ANGLE_MAX * FLAT_ANGLE_MAX;
 }
 
+/* Light that is scattered in the glass does not pass it straight. */
+static bool scatters_within(const scene *s, const slab_way *way)
+{
+    return way->medium < s->medium_count && medium_scatters(&s->media[way->medium]);
+}
+
 /* Follows a ray that has met a patch straight into the glass. Returns false where it does not leave by the patch's
  * counterpart, or where the part between them is no slab. */
 static bool find_exit(const scene *s, const slab_faces *f, const scene_ray *ray, const surface_hit *in,
@@ -96,7 +102,7 @@ static bool find_exit(const scene *s, const slab_faces *f, const scene_ray *ray,
                           .epsilon = out_hit->epsilon,
                           .thickness = thickness,
                           .medium = in->has_medium_interface ? in->medium_inside : ray->medium};
-    return true;
+    return !scatters_within(s, out_way);
 }
 
 void slab_faces_meet(const scene *s, const scene_ray *ray, surface_hit *in_out_hit)

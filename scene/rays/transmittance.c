@@ -5,6 +5,7 @@
 
 #include "material/bsdf.h"
 #include "material/pane.h"
+#include "medium/medium_flight.h"
 #include "rays/slab_faces.h"
 
 static rgb transmittance_in(const scene *s, uint32_t medium_index, float distance)
@@ -45,11 +46,29 @@ scene_ray scene_ray_continue(const surface_hit *hit, const scene_ray *ray)
 
 static float distance_between(vec3 a, vec3 b) { return sqrtf(vec3_distance_squared(a, b)); }
 
+/* The point of a ray where a medium scatters it, at a distance from `from`: not behind the surface that the ray has
+ * met, if any (hit). travelled: the distance of `from`. */
+static void scatter_at(const scene_ray *ray, vec3 from, float distance, const surface_hit *hit, float travelled,
+                       surface_hit *out_point)
+{
+    float along = fmaxf(distance - distance_between(from, ray->origin), 0.0f);
+    if (hit)
+        along = fmaxf(fminf(along, distance_between(ray->origin, hit->position) - hit->epsilon), 0.0f);
+    vec3 back = vec3_negate(ray->direction);
+    *out_point = (surface_hit){.position = vec3_add_scaled(ray->origin, ray->direction, along),
+                               .geometric_normal = back,
+                               .shading_normal = back,
+                               .distance = travelled + distance,
+                               .instance_index = SCENE_NO_INSTANCE,
+                               .time = ray->time};
+}
+
 /* Follows a ray of unit direction up to `length` and across interfaces, and panes too if so wished, to the first
- * surface that stays. *ray becomes its last stretch. in_out_left, which may be NULL, is multiplied by what media and
- * panes leave of light; where that is nothing, or there are too many crossings, the way ends in the dark: false. */
-static bool follow(const scene *s, scene_ray *ray, float length, bool through_panes, uint64_t *in_out_cut,
-                   surface_hit *out_hit, rgb *in_out_left)
+ * surface that stays. *ray becomes its last stretch. Either of the last two may be NULL: in_out_left is multiplied by
+ * what media and panes leave of light; a flight ends where a medium scatters the ray. Where no light is left, or there
+ * are too many crossings, the way ends in the dark. */
+static ray_end follow(const scene *s, scene_ray *ray, float length, bool through_panes, uint64_t *in_out_cut,
+                      surface_hit *out_hit, rgb *in_out_left, medium_flight *flight)
 {
     bool is_bounded = !isinf(length);
     vec3 from = ray->origin, end = is_bounded ? vec3_add_scaled(ray->origin, ray->direction, length) : ray->origin;
@@ -58,11 +77,18 @@ static bool follow(const scene *s, scene_ray *ray, float length, bool through_pa
         bool is_hit = scene_intersect(s, *ray, length, out_hit);
         float to_end = is_bounded ? distance_between(from, end) : INFINITY;
         float distance = is_hit ? distance_between(from, out_hit->position) : to_end;
+        float free;
+        if (flight && ray->medium < s->medium_count &&
+            medium_flight_pass(flight, &s->media[ray->medium], distance, &free)) {
+            surface_hit hit = *out_hit;
+            scatter_at(ray, from, free, is_hit ? &hit : NULL, travelled, out_hit);
+            return RAY_ENDS_IN_MEDIUM;
+        }
         travelled += distance;
         if (in_out_left)
             *in_out_left = rgb_mul(*in_out_left, transmittance_in(s, ray->medium, distance));
-        if (!is_hit || (in_out_left && rgb_is_black(*in_out_left)))
-            return false;
+        if (!is_hit || (in_out_left && rgb_is_black(*in_out_left)) || (flight && rgb_is_black(flight->transmittance)))
+            return RAY_ENDS_NOWHERE;
         slab_meet(s, ray, out_hit);
         bool is_slab = out_hit->slab.thickness > 0.0f;
         if (is_slab && is_bounded && !(vec3_dot(vec3_sub(end, out_hit->slab.exit), ray->direction) > 0.0f))
@@ -70,7 +96,7 @@ static bool follow(const scene *s, scene_ray *ray, float length, bool through_pa
         rgb passed = let_through(s, out_hit, ray, through_panes);
         if (rgb_is_black(passed)) {
             out_hit->distance = travelled;
-            return true;
+            return RAY_ENDS_AT_SURFACE;
         }
         if (in_out_left)
             *in_out_left = rgb_mul(*in_out_left, passed);
@@ -78,7 +104,9 @@ static bool follow(const scene *s, scene_ray *ray, float length, bool through_pa
             (*in_out_cut)++;
             if (in_out_left)
                 *in_out_left = rgb_gray(0.0f);
-            return false;
+            if (flight)
+                flight->transmittance = rgb_gray(0.0f);
+            return RAY_ENDS_NOWHERE;
         }
         from = is_slab ? out_hit->slab.exit : out_hit->position;
         travelled += is_slab ? distance_between(out_hit->position, from) : 0.0f;
@@ -89,7 +117,7 @@ static bool follow(const scene *s, scene_ray *ray, float length, bool through_pa
         vec3 rest = vec3_sub(end, ray->origin);
         length = vec3_length(rest);
         if (!(vec3_dot(rest, ray->direction) > 0.0f))
-            return false;
+            return RAY_ENDS_NOWHERE;
         ray->direction = vec3_scale(rest, 1.0f / length);
     }
 }
@@ -100,7 +128,7 @@ bool transmittance_intersect(const scene *s, scene_ray *ray, uint64_t *in_out_cu
     if (s->has_interfaces) {
         scene_ray last = *ray;
         *out_transmittance = rgb_gray(1.0f);
-        bool is_met = follow(s, &last, INFINITY, false, in_out_cut, out_hit, out_transmittance);
+        bool is_met = follow(s, &last, INFINITY, false, in_out_cut, out_hit, out_transmittance, NULL);
         ray->medium = last.medium;
         return is_met;
     }
@@ -109,6 +137,17 @@ bool transmittance_intersect(const scene *s, scene_ray *ray, uint64_t *in_out_cu
         slab_meet(s, ray, out_hit);
     *out_transmittance = transmittance_in(s, ray->medium, is_hit ? out_hit->distance : INFINITY);
     return is_hit && !rgb_is_black(*out_transmittance);
+}
+
+ray_end transmittance_travel(const scene *s, scene_ray *ray, vec2 u, uint64_t *in_out_cut, surface_hit *out_hit,
+                             rgb *out_weight)
+{
+    medium_flight flight = medium_flight_begin(u);
+    scene_ray last = *ray;
+    ray_end end = follow(s, &last, INFINITY, false, in_out_cut, out_hit, NULL, &flight);
+    ray->medium = last.medium;
+    *out_weight = medium_flight_weight(&flight);
+    return rgb_is_black(*out_weight) ? RAY_ENDS_NOWHERE : end;
 }
 
 /* Normalises the direction and returns its former length. */
@@ -132,7 +171,7 @@ rgb transmittance_of_ray(const scene *s, scene_ray ray, float reach, uint64_t *i
     float unit = normalize_direction(&ray);
     if (!(unit > 0.0f))
         return left; /* from a point to itself */
-    return follow(s, &ray, reach * unit, false, in_out_cut, &hit, &left) ? rgb_gray(0.0f) : left;
+    return follow(s, &ray, reach * unit, false, in_out_cut, &hit, &left, NULL) ? rgb_gray(0.0f) : left;
 }
 
 rgb transmittance_through_panes(const scene *s, scene_ray ray, float reach, uint64_t *in_out_cut)
@@ -143,7 +182,7 @@ rgb transmittance_through_panes(const scene *s, scene_ray ray, float reach, uint
     ray.slabs_are_panes = true;
     if (!(unit > 0.0f))
         return left;
-    return follow(s, &ray, reach * unit, true, in_out_cut, &hit, &left) ? rgb_gray(0.0f) : left;
+    return follow(s, &ray, reach * unit, true, in_out_cut, &hit, &left, NULL) ? rgb_gray(0.0f) : left;
 }
 
 bool scene_find_surface(const scene *s, scene_ray ray, float max_distance, surface_hit *out_hit)
@@ -155,7 +194,7 @@ bool scene_find_surface(const scene *s, scene_ray ray, float max_distance, surfa
         return scene_intersect(s, ray, max_distance, out_hit);
     uint64_t cut = 0;
     float unit = normalize_direction(&ray);
-    if (!(unit > 0.0f) || !follow(s, &ray, max_distance * unit, false, &cut, out_hit, NULL))
+    if (!(unit > 0.0f) || !follow(s, &ray, max_distance * unit, false, &cut, out_hit, NULL, NULL))
         return false;
     out_hit->distance /= unit;
     return true;

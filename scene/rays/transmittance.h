@@ -18,6 +18,20 @@ enum { TRANSMITTANCE_CROSSINGS_MAX = 256 };
 bool transmittance_intersect(const scene *s, scene_ray *ray, uint64_t *in_out_cut, surface_hit *out_hit,
                              rgb *out_transmittance);
 
+/* Where a ray that may be scattered on its way has come to. */
+typedef enum ray_end {
+    RAY_ENDS_NOWHERE,    /* it has left the scene, or no light is left */
+    RAY_ENDS_AT_SURFACE, /* that scatters */
+    RAY_ENDS_IN_MEDIUM   /* that has scattered it */
+} ray_end;
+
+/* Follows a ray of unit direction, as transmittance_intersect does, up to where a medium scatters it, which two random
+ * numbers in [0, 1) decide. *out_weight: of the light that comes from there: the transmittance over the probability of
+ * coming there, and in a medium times sigma_s. out_hit: in a medium, the position, the distance and the time are those
+ * of a point of no surface (epsilon 0), and the normals point back along the ray. */
+ray_end transmittance_travel(const scene *s, scene_ray *ray, vec2 u, uint64_t *in_out_cut, surface_hit *out_hit,
+                             rgb *out_weight);
+
 /* Returns whether transmittance_intersect of such a ray equals scene_intersect, since nothing on its way absorbs. */
 static inline bool transmittance_is_one(const scene *s, const scene_ray *ray)
 {

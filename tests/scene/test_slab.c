@@ -142,12 +142,12 @@ static void bent_face(slab_text *t, float radius, bool is_turned)
 }
 
 /* No light passes straight, and scenes without slabs are told of none: a block, a wedge, a plate whose normals are
- * bent, a fine cylinder, rough glass, a single face, faces turned inwards, a plate that shines or is there in part, and
- * two materials. */
+ * bent, a fine cylinder, rough glass, a single face, faces turned inwards, a plate that shines or is there in part,
+ * two materials, and glass in which a medium scatters light. */
 static void test_other_glass(void **state)
 {
     (void)state;
-    static slab_text t[11];
+    static slab_text t[12];
     int n = 0;
     slab_say(&t[n], GLASS);
     slab_box(&t[n++], LOW, vec3_make(20, 20, 3.0f));
@@ -179,7 +179,11 @@ static void test_other_glass(void **state)
     slab_say(&t[n], GLASS);
     bent_face(&t[n], 100.25f, false);
     bent_face(&t[n++], 100.0f, true);
-    assert_int_equal(n, 11);
+    slab_say(&t[n], "MakeNamedMedium \"milk\" \"string type\" \"homogeneous\"\nAttributeBegin\n" GLASS
+                    "MediumInterface \"milk\" \"\"\n");
+    slab_box(&t[n], LOW, HIGH);
+    slab_say(&t[n++], "AttributeEnd");
+    assert_int_equal(n, 12);
     for (int i = 0; i < n; i++) {
         test_run r;
         scene *s = scene_of(&r, &t[i]);

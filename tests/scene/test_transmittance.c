@@ -1,6 +1,6 @@
 /* test_transmittance.c: what is left of light on its way through media and across interfaces, by Beer's law, and the
  * medium it arrives in. Threads: one. */
-#include "medium.h"
+#include "medium/medium.h"
 #include "rays/transmittance.h"
 
 #include "fixtures/test_scene.h"
@@ -58,7 +58,7 @@ static void expect_way(const scene *s, vec3 from, vec3 to, uint32_t start, doubl
 static void beers_law(void **state)
 {
     (void)state;
-    const medium m = {{0.1f, 0.0f, 7.0f}};
+    const medium m = {.sigma_a = {0.1f, 0.0f, 7.0f}};
     for (int i = 0; i <= 40; i++) {
         float distance = 0.25f * (float)i;
         rgb left = medium_transmittance(&m, distance);

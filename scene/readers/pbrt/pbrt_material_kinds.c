@@ -5,7 +5,7 @@
  * material. Threads: one per scene. */
 #include "color/spectra.h"
 #include "material/hair.h"
-#include "medium.h"
+#include "medium/medium.h"
 #include "pbrt/pbrt_private.h"
 
 #include <stdio.h>

@@ -1,23 +1,10 @@
-/* medium.c: see medium.h.
+/* medium_presets.c: measured media by their names: see medium.h.
  * The table rests on: Jensen, Marschner, Levoy, Hanrahan, "A Practical Model for Subsurface Light Transport", 2001,
  * figure 5; Narasimhan, Gupta, Donner, Ramamoorthi, Nayar, Jensen, "Acquiring Scattering Properties of Participating
  * Media by Dilution", 2006, as pbrt-v4 names and rounds them. Threads: pure functions. */
-#include "medium.h"
-
-#include "material/fresnel.h"
+#include "medium/medium.h"
 
 #include <string.h>
-
-static float channel_transmittance(float sigma_a, float distance)
-{
-    return sigma_a > 0.0f ? attenuation(sigma_a * distance) : 1.0f; /* 0 times infinity would be no number */
-}
-
-rgb medium_transmittance(const medium *m, float distance)
-{
-    return (rgb){channel_transmittance(m->sigma_a.r, distance), channel_transmittance(m->sigma_a.g, distance),
-                 channel_transmittance(m->sigma_a.b, distance)};
-}
 
 static const struct {
     const char *name;
