@@ -2,24 +2,45 @@
 #include "photon_arrival.h"
 
 #include "material/lambert.h"
+#include "medium/phase_function.h"
 
 /* The share of ways on by a surface's diffuse lobes that importons lead, where there are any. */
 static const float LED_SHARE = 0.5f;
 /* The share in a caustic map, whose photons come by ways as well that no importon tells of. */
 static const float CAUSTIC_LED_SHARE = 0.2f;
 
+/* What a ray carries, at the hit. */
+static void note_arrival(scene_ray *ray, photon_arrival *at)
+{
+    at->arrived = ray->direction;
+    if (ray_cone_is_wide(&ray->cone)) {
+        ray->cone = ray_cone_at(&ray->cone, at->hit.distance);
+        at->hit.footprint = ray_cone_footprint(&ray->cone, ray->direction);
+    }
+}
+
 bool photon_arrival_meet(const scene *s, scene_ray *in_out_ray, uint64_t *in_out_cut, photon_arrival *out,
                          rgb *out_transmittance)
 {
-    scene_ray *ray = in_out_ray;
-    if (!transmittance_intersect(s, ray, in_out_cut, &out->hit, out_transmittance))
+    if (!transmittance_intersect(s, in_out_ray, in_out_cut, &out->hit, out_transmittance))
         return false;
-    out->arrived = ray->direction;
-    if (ray_cone_is_wide(&ray->cone)) {
-        ray->cone = ray_cone_at(&ray->cone, out->hit.distance);
-        out->hit.footprint = ray_cone_footprint(&ray->cone, ray->direction);
-    }
+    note_arrival(in_out_ray, out);
     return true;
+}
+
+ray_end photon_arrival_travel(const scene *s, scene_ray *in_out_ray, vec2 u, uint64_t *in_out_cut, photon_arrival *out,
+                              rgb *out_weight)
+{
+    ray_end end = transmittance_travel(s, in_out_ray, u, in_out_cut, &out->hit, out_weight);
+    if (end != RAY_ENDS_NOWHERE)
+        note_arrival(in_out_ray, out);
+    return end;
+}
+
+void photon_arrival_scatter_in_medium(const scene *s, const photon_arrival *at, vec2 u, scene_ray *ray)
+{
+    ray->origin = at->hit.position;
+    ray->direction = phase_function_sample(s->media[ray->medium].g, at->arrived, u);
 }
 
 /* Returns the share of a map's ways on that importons lead: of those by diffuse lobes; of a caustic map's all, where

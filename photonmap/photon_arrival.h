@@ -1,7 +1,7 @@
-/* photon_arrival.h: where a photon path has arrived, and all that follows from its lying on a surface: whether a photon
- * is stored there, where, and with which flux; how flux scatters; and the ray that leaves. photon_path asks these
- * functions alone, as integrators ask integrator/vertex.h, so a point in a medium has its place here.
- * Flow: transmittance -> [here] -> photon_path. Threads: pure functions. */
+/* photon_arrival.h: where a photon path has arrived, on a surface or in a medium, and all that follows from that:
+ * whether a photon is stored there, where, and with which flux; how flux scatters; and the ray that leaves. photon_path
+ * asks these functions alone, as integrators ask integrator/vertex.h. Flow: transmittance -> [here] -> photon_path.
+ * Threads: pure functions. */
 #ifndef AFTERGLOW_PHOTON_ARRIVAL_H
 #define AFTERGLOW_PHOTON_ARRIVAL_H
 
@@ -25,6 +25,14 @@ typedef struct photon_arrival {
  * there; adds 1 to *in_out_cut where too many surfaces lie on the way. Returns false where the ray leaves the scene. */
 bool photon_arrival_meet(const scene *s, scene_ray *in_out_ray, uint64_t *in_out_cut, photon_arrival *out_arrival,
                          rgb *out_transmittance);
+
+/* photon_arrival_meet where media that scatter lie on the way: the ray may end in one of them, as two random numbers
+ * decide, and *out_weight is then that of the flux there (transmittance_travel). */
+ray_end photon_arrival_travel(const scene *s, scene_ray *in_out_ray, vec2 u, uint64_t *in_out_cut,
+                              photon_arrival *out_arrival, rgb *out_weight);
+
+/* Scatters flux in the medium of the ray that has arrived there: *in_out_ray goes on from there. */
+void photon_arrival_scatter_in_medium(const scene *s, const photon_arrival *at, vec2 u, scene_ray *in_out_ray);
 
 /* Finds how the surface that was met scatters, and by which ways importons came there. */
 void photon_arrival_complete(const scene *s, const photon_tracing_settings *settings, photon_arrival *in_out_arrival);

@@ -26,9 +26,9 @@ typedef struct photon_path {
     uint64_t key;
     float weight;    /* how dense such paths would be by power alone, over how dense guide and parts make them */
     float share;     /* of the begun path, that this part has */
-    int scatterings; /* but for panes, where they are direct */
+    int scatterings; /* by surfaces and media, but for panes, where they are direct */
     int arrivals;    /* at surfaces, panes too */
-    bool is_diffuse; /* has gone on from a surface by its gathered lobes */
+    bool is_diffuse; /* has gone on from a surface by its gathered lobes, or from a point in a medium */
 } photon_path;
 
 static void count_flux(double entry[3], rgb flux)
@@ -126,13 +126,14 @@ static void store(photon_tracer *t, const photon_path *path, const photon_arriva
         append_photon(t, path, &rest, key, flux);
 }
 
-/* Media absorb their share of a path's flux; roulette then keeps its flux about constant, so that no photons are spent
- * on faint light. Returns false where the path ends. No random number is drawn where nothing is absorbed. */
-static bool pass_media(energy_balance *balance, rgb transmittance, rng *random, rgb *in_out_flux)
+/* A way through media multiplies a path's flux by a weight. What it takes counts as absorbed: where media scatter, that
+ * is right on average. Roulette then keeps the flux about constant, so that no photons are spent on faint light.
+ * Returns false where the path ends. No random number is drawn where the weight is 1. */
+static bool pass_media(energy_balance *balance, rgb weight, rng *random, rgb *in_out_flux)
 {
-    if (transmittance.r == 1.0f && transmittance.g == 1.0f && transmittance.b == 1.0f)
+    if (weight.r == 1.0f && weight.g == 1.0f && weight.b == 1.0f)
         return true;
-    rgb flux = *in_out_flux, left = rgb_mul(flux, transmittance);
+    rgb flux = *in_out_flux, left = rgb_mul(flux, weight);
     count_flux(balance->absorbed, rgb_sub(flux, left));
     if (rgb_is_black(left))
         return false;
@@ -318,20 +319,44 @@ static bool arrive(photon_tracer *t, photon_path *path, photon_arrival *at)
     return scatter(t, path, at);
 }
 
+/* Sends the path on from where a medium has scattered it. Returns false where it ends. */
+static bool scatter_in_medium(photon_tracer *t, photon_path *path, const photon_arrival *at)
+{
+    if (path->scatterings >= t->settings->max_scatterings) {
+        count_flux(t->out->balance.truncated, path->flux);
+        return false;
+    }
+    photon_arrival_scatter_in_medium(t->s, at, rng_vec2(&path->random), &path->ray);
+    path->scatterings++;
+    path->is_diffuse = true;
+    return true;
+}
+
+/* Follows the path's ray, through media that scatter too. Light that they scatter is no caustic: a caustic map's paths
+ * go straight on, with what is left of their flux. */
+static ray_end meet(photon_tracer *t, photon_path *path, photon_arrival *out_at, rgb *out_weight)
+{
+    t->out->rays++;
+    if (t->s->has_scattering_media && t->settings->kind == PHOTON_GLOBAL)
+        return photon_arrival_travel(t->s, &path->ray, rng_vec2(&path->random), &t->out->rays_cut, out_at, out_weight);
+    return photon_arrival_meet(t->s, &path->ray, &t->out->rays_cut, out_at, out_weight) ? RAY_ENDS_AT_SURFACE
+                                                                                        : RAY_ENDS_NOWHERE;
+}
+
 static void follow_path(photon_tracer *t, photon_path *path)
 {
     energy_balance *balance = &t->out->balance;
     bool goes_on = true;
     while (goes_on) {
         photon_arrival at;
-        rgb transmittance;
-        t->out->rays++;
-        bool is_met = photon_arrival_meet(t->s, &path->ray, &t->out->rays_cut, &at, &transmittance);
-        if (!pass_media(balance, transmittance, &path->random, &path->flux))
+        rgb weight;
+        ray_end end = meet(t, path, &at, &weight);
+        if (!pass_media(balance, weight, &path->random, &path->flux))
             return;
-        if (!is_met)
+        if (end == RAY_ENDS_NOWHERE)
             count_flux(balance->escaped, path->flux);
-        goes_on = is_met && arrive(t, path, &at);
+        goes_on = end == RAY_ENDS_IN_MEDIUM ? scatter_in_medium(t, path, &at)
+                                            : end == RAY_ENDS_AT_SURFACE && arrive(t, path, &at);
     }
 }
 

@@ -44,6 +44,19 @@ static rgb gathered_share(const bsdf *b, bsdf_lobes lobes, vec3 direction)
                  all.b > 0.0f ? gathered.b / all.b : 0.0f};
 }
 
+/* Returns the shares of the parts behind the vertex, whose light was scattered by these lobes out of a direction. Light
+ * that a medium scatters is traced on: specular, as seen by way of a mirror; but indirect behind a diffuse surface, as
+ * gather rays find it. */
+static part_shares shares_behind_vertex(const part_shares *before, const vertex *v, bsdf_lobes lobes, vec3 direction)
+{
+    if (!v->is_in_medium)
+        return shares_behind(before, gathered_share(&v->scattering, lobes, direction));
+    part_shares after = shares_behind(before, rgb_gray(0.0f));
+    after.of[PART_INDIRECT] = rgb_add(after.of[PART_INDIRECT], after.of[PART_CAUSTIC]);
+    after.of[PART_CAUSTIC] = rgb_gray(0.0f);
+    return after;
+}
+
 /* Adds light to the sample and to the parts of it, which are NULL where nobody asks for them. is_sky: the light is an
  * infinite light's. Returns the factor by which the light was bounded. */
 static float add_light(eye_sample *sample, const eye_path *path, const part_shares *parts, int scatterings, rgb brought,
@@ -62,6 +75,18 @@ static float add_light(eye_sample *sample, const eye_path *path, const part_shar
 
 /* --- the steps --- */
 
+/* Notes for layers what the camera ray has met first: a surface, also where a medium before it has scattered the ray.
+ */
+static void fill_first_hit(const transport *t, eye_worker *worker, const eye_path *path, const vertex *met,
+                           first_hit *out_first)
+{
+    vertex behind;
+    if (!met->is_in_medium)
+        first_hit_fill(t, worker, met, &path->where, out_first);
+    else if (transport_trace(t, worker, path->ray, &behind))
+        first_hit_fill(t, worker, &behind, &path->where, out_first);
+}
+
 bool eye_path_trace(const transport *t, eye_worker *worker, eye_path *path, eye_sample *sample, vertex *out)
 {
     bool is_camera_ray = path->vertex == 0;
@@ -69,11 +94,14 @@ bool eye_path_trace(const transport *t, eye_worker *worker, eye_path *path, eye_
         worker->rays_camera++;
     else
         worker->rays_path++;
-    bool is_met = transport_trace(t, worker, path->ray, out);
+    vec2 u = {0.0f, 0.0f};
+    if (t->s->has_scattering_media)
+        u = sampler_2d(&path->where, SAMPLE_DISTANCE, eye_path_key(path));
+    bool is_met = transport_travel(t, worker, path->ray, u, out);
     path->throughput = rgb_mul(path->throughput, out->transmittance);
     worker->camera_rays_met += is_met && is_camera_ray;
     if (is_met && is_camera_ray && t->wants_layers)
-        first_hit_fill(t, worker, out, &path->where, &sample->layers->first);
+        fill_first_hit(t, worker, path, out, &sample->layers->first);
     return is_met;
 }
 
@@ -117,7 +145,7 @@ void eye_path_add_direct(const transport *t, eye_worker *worker, const eye_path 
     const light *lamp = &t->s->lights[direct.lamp];
     part_shares parts;
     if (path->wants_parts)
-        parts = shares_behind(&path->parts, gathered_share(&v->scattering, lobes, direct.direction));
+        parts = shares_behind_vertex(&path->parts, v, lobes, direct.direction);
     float kept = add_light(sample, path, path->wants_parts ? &parts : NULL, path->scatterings + 1, brought,
                            lamp->kind == LIGHT_INFINITE);
     if (t->wants_groups)
@@ -150,8 +178,7 @@ bool eye_path_go_on(const transport *t, const vertex *v, bsdf_lobes lobes, float
     if (path->first_gathered == 0 && next.group == BSDF_GATHERED)
         path->first_gathered = path->scatterings;
     if (path->wants_parts)
-        path->parts = shares_behind(&path->parts,
-                                    gathered_share(&v->scattering, next.is_delta ? next.group : lobes, next.direction));
+        path->parts = shares_behind_vertex(&path->parts, v, next.is_delta ? next.group : lobes, next.direction);
     path->scattered_from = vertex_position(v);
     path->scattered_normal = vertex_light_normal(v, lobes);
     path->scattered_pdf = next.is_delta ? 0.0f : next.pdf_solid_angle;

@@ -1,5 +1,5 @@
-/* eye_path.h: a path of light followed back from the eye, step by step: trace to the next hit, add the light that is
- * met there and the light that a lamp sends there, scatter on.
+/* eye_path.h: a path of light followed back from the eye, step by step: trace to the next vertex, on a surface or in a
+ * medium, add the light that is met there and the light that a lamp sends there, scatter on.
  * Rests on: Kajiya, "The Rendering Equation", 1986; Veach 1997, ch. 9, 10 (next-event estimation, MIS); Heckbert 1990
  * (path notation, for the parts of the light).
  * Flow: shading, path_tracing and eye_pilot each follow paths by these steps -> eye_sample.
@@ -51,8 +51,8 @@ static inline float eye_path_u_lobe(const eye_path *path)
     return sampler_2d(&path->where, SAMPLE_LOBE, eye_path_key(path)).x;
 }
 
-/* Follows the ray to the first surface that scatters; returns false where it escapes. Fills the sample's first hit
- * where layers ask for it; sample may be NULL where none do. */
+/* Follows the ray to the first surface or point of a medium that scatters; returns false where it escapes. Fills the
+ * sample's first hit where layers ask for it; sample may be NULL where none do. */
 bool eye_path_trace(const transport *t, eye_worker *worker, eye_path *in_out_path, eye_sample *sample,
                     vertex *out_vertex);
 

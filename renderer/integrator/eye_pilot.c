@@ -182,9 +182,10 @@ static void gather_points(const transport *t, eye_worker *worker, const vertex *
             continue;
         scene_ray ray = transport_scattered_ray(t, v, first.direction, false);
         ray.skips_uv = true;
-        if (!transport_meet(t, worker, ray, &met))
+        if (!transport_travel_to(t, worker, ray, &random, &met))
             continue;
-        note_caustic_way(t, &met, out);
+        if (!met.is_in_medium)
+            note_caustic_way(t, &met, out);
         if (gather_path_follow(t, worker, &met, random, scatterings_left, first.weight, 1.0f, &known, &end, &weight)) {
             add_point(out, GATHERED, end.point.position, end.point.normal);
             if (i % POINTS_PER_IMPORTON == 0) {

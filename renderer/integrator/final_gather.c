@@ -7,6 +7,9 @@
 #include "rays/slab_faces.h"
 #include "rays/transmittance.h"
 
+/* Sets the random numbers of the distance that a ray goes through media apart from all others of the ray. */
+static const uint64_t KEY_OF_DISTANCE = 0x64697374616e6365u;
+
 /* A gather while its rays are sent. */
 typedef struct gathering {
     const transport *t;
@@ -48,12 +51,14 @@ static void follow(gathering *g, uint32_t number, rgb first, vertex *v)
 static void follow_alone(gathering *g, uint32_t number, vec3 direction, rgb weight)
 {
     vertex v;
+    rng random = rng_make(g->request->where->key ^ KEY_OF_DISTANCE, (uint64_t)g->request->path_vertex,
+                          (uint64_t)g->request->where->sample * g->request->count + number);
     scene_ray ray = transport_scattered_ray(g->t, g->request->from, direction, false);
     ray.skips_uv = true;
     ray.cone = transport_gather_cone(g->request->from);
     g->worker->rays_gather++;
     g->cost += EYE_COST_OF_RAY;
-    if (transport_meet(g->t, g->worker, ray, &v))
+    if (transport_travel_to(g->t, g->worker, ray, &random, &v))
         follow(g, number, weight, &v);
 }
 
@@ -89,6 +94,7 @@ static void follow_together(gathering *g, gather_rays *r)
         v.arrived = fan->common;
         v.arrived.direction = ray_fan_direction(fan, i);
         v.transmittance = rgb_gray(1.0f);
+        v.is_in_medium = false;
         ray_fan_hit(t->s, fan, i, &v.hit);
         slab_meet(t->s, &v.arrived, &v.hit);
         vertex_note_footprint(&v);

@@ -18,6 +18,24 @@ static rgb local_light(const transport *t, eye_worker *worker, const vertex *v, 
                    transport_some_caustics(t, worker, v, transport_caustic_probability(t, share_seen), u_caustic));
 }
 
+/* The last scattering of a gather ray by a medium, or by traced lobes behind that. From there on to the next diffuse
+ * surface it is followed as a path tracer's: neither the direct light of the surface that gathers nor a caustic map has
+ * the light that a medium has scattered. */
+typedef struct traced_start {
+    bool is_set;
+    vec3 position, normal; /* normal: vertex_light_normal */
+    float pdf;             /* of the ray that left it, 1/sr; 0: by a smooth lobe, for which no shadow ray can stand */
+} traced_start;
+
+/* Returns the radiance that the ray meets at a surface, weighted against shadow rays from where it was traced on. */
+static rgb traced_emission(const transport *t, const traced_start *from, const vertex *v)
+{
+    rgb emitted = from->is_set ? vertex_emission(t->s, v) : rgb_gray(0.0f);
+    if (rgb_is_black(emitted) || !(from->pdf > 0.0f))
+        return emitted;
+    return rgb_scale(emitted, direct_light_scatter_weight(t, from->position, from->normal, v, from->pdf, 1, 1.0f));
+}
+
 /* Ends the ray at a diffuse vertex with the irradiance on one side of it, which is picked by the lobes' shares. */
 static void end_at(const transport *t, const vertex *v, int scatterings_left, rgb throughput, float u_side,
                    gather_end *out_end, rgb *out_weight)
@@ -42,11 +60,14 @@ bool gather_path_follow(const transport *t, eye_worker *worker, vertex *v, rng r
     rgb throughput = rgb_gray(1.0f);
     float travelled = 0.0f;
     int short_bounces = 0;
+    traced_start start = {.is_set = false};
     for (int depth = 0;;) {
         throughput = rgb_mul(throughput, v->transmittance);
         travelled += v->hit.distance;
         bool is_far = travelled >= t->gather_min_distance || short_bounces == SHORT_BOUNCES_MAX;
         transport_complete(t, v);
+        if (start.is_set)
+            *in_out_known = rgb_add(*in_out_known, rgb_mul(rgb_mul(first, throughput), traced_emission(t, &start, v)));
         float u_lobe = rng_float(&random), u_group = rng_float(&random);
         vec2 u = rng_vec2(&random);
 
@@ -65,6 +86,15 @@ bool gather_path_follow(const transport *t, eye_worker *worker, vertex *v, rng r
             *in_out_known = rgb_add(*in_out_known, rgb_mul(weight, local));
             travelled = 0.0f;
             short_bounces++;
+            start.is_set = false;
+        }
+        bool is_last = depth + 1 == scatterings_left;
+        bool is_traced = lobes == BSDF_TRACED && (v->is_in_medium || start.is_set);
+        if (is_traced && bsdf_is_sampled_from_light(&v->scattering, BSDF_TRACED)) {
+            float u_pick = rng_float(&random);
+            rgb direct =
+                direct_light_from_lamp(t, worker, v, BSDF_TRACED, u_pick, rng_vec2(&random), 1, is_last ? 0.0f : 1.0f);
+            *in_out_known = rgb_add(*in_out_known, rgb_mul(rgb_mul(first, throughput), direct));
         }
         bsdf_sample next;
         if (!bsdf_sample_direction(&v->scattering, lobes, BSDF_RADIANCE, u_lobe, u, &next))
@@ -79,8 +109,18 @@ bool gather_path_follow(const transport *t, eye_worker *worker, vertex *v, rng r
         scene_ray ray = goes_straight ? vertex_ray_straight(v) : transport_scattered_ray(t, v, next.direction, true);
         ray.skips_uv = true;
         worker->rays_gather++;
-        if (!transport_meet(t, worker, ray, v))
-            return false;
+        if (is_traced && !goes_straight)
+            start = (traced_start){true, vertex_position(v), vertex_light_normal(v, BSDF_TRACED),
+                                   next.is_delta ? 0.0f : next.pdf_solid_angle};
+        if (transport_travel_to(t, worker, ray, &random, v))
+            continue;
+        if (start.is_set) {
+            rgb weight = rgb_mul(rgb_mul(first, throughput), v->transmittance);
+            *in_out_known =
+                rgb_add(*in_out_known, rgb_mul(weight, direct_light_escaped(t, start.position, start.normal,
+                                                                            ray.direction, start.pdf, 1, 1.0f, NULL)));
+        }
+        return false;
     }
 }
 
@@ -99,6 +139,7 @@ void gather_end_make_white(const gather_end *end, vertex *v)
     bsdf_init_of(&WHITE, &v->hit, at->normal, &v->scattering);
     v->transmittance = rgb_gray(1.0f);
     v->lamp = NULL;
+    v->is_in_medium = false;
 }
 
 bool gather_path_bounce(const transport *t, eye_worker *worker, rng random, float share_seen, gather_end *in_out_end,
@@ -117,7 +158,7 @@ bool gather_path_bounce(const transport *t, eye_worker *worker, rng random, floa
         return false;
     scene_ray ray = transport_scattered_ray(t, &v, next.direction, false);
     worker->rays_gather++;
-    return transport_meet(t, worker, ray, &v) &&
+    return transport_travel_to(t, worker, ray, &random, &v) &&
            gather_path_follow(t, worker, &v, random, left, rgb_mul(throughput, next.weight), share_seen, in_out_known,
                               in_out_end, in_out_weight);
 }

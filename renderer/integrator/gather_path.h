@@ -11,7 +11,9 @@
  * behind the ray is multiplied by; share_seen: how much of that again reaches the eye. Adds to *in_out_known what
  * direct light and caustics on the way bring. Returns true where there is more light: the irradiance at out_end->point
  * times *out_weight (1/sr). Lamps and environments that the ray meets add nothing: their light is direct light where it
- * comes straight, and in the caustic map where it comes by way of traced lobes. */
+ * comes straight, and in the caustic map where it comes by way of traced lobes. But behind a point where a medium has
+ * scattered the ray it is followed as a path tracer's up to the next diffuse surface: shadow rays, and lamps that it
+ * meets, add to *in_out_known. */
 bool gather_path_follow(const transport *t, eye_worker *worker, vertex *v, rng random, int scatterings_left,
                         rgb throughput, float share_seen, rgb *in_out_known, gather_end *out_end, rgb *out_weight);
 

@@ -24,7 +24,10 @@ typedef enum sample_use {
     SAMPLE_USE_COUNT,
     /* The time of the path, drawn at its first vertex alone. It takes the numbers of SAMPLE_PIXEL at the second vertex,
      * where no point on the film is drawn, so other draws keep their numbers. */
-    SAMPLE_TIME = SAMPLE_USE_COUNT + SAMPLE_PIXEL
+    SAMPLE_TIME = SAMPLE_USE_COUNT + SAMPLE_PIXEL,
+    /* How far a ray goes through media that scatter. It takes the numbers of SAMPLE_LENS at the next vertex, likewise.
+     */
+    SAMPLE_DISTANCE = SAMPLE_USE_COUNT + SAMPLE_LENS
 } sample_use;
 
 typedef struct sampler {

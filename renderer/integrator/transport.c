@@ -20,9 +20,38 @@ bool transport_meet(const transport *t, eye_worker *worker, scene_ray ray, verte
 {
     bool is_met = transmittance_intersect(t->s, &ray, &worker->rays_cut, &out_vertex->hit, &out_vertex->transmittance);
     out_vertex->arrived = ray;
+    out_vertex->is_in_medium = false;
     if (is_met)
         vertex_note_footprint(out_vertex);
     return is_met;
+}
+
+/* Moves along the ray as transport_travel does, without completing the vertex. */
+static bool travel(const transport *t, eye_worker *worker, scene_ray ray, vec2 u, vertex *out)
+{
+    ray_end end = transmittance_travel(t->s, &ray, u, &worker->rays_cut, &out->hit, &out->transmittance);
+    out->arrived = ray;
+    out->is_in_medium = end == RAY_ENDS_IN_MEDIUM;
+    if (end == RAY_ENDS_NOWHERE)
+        return false;
+    vertex_note_footprint(out);
+    return true;
+}
+
+bool transport_travel_to(const transport *t, eye_worker *worker, scene_ray ray, rng *random, vertex *out_vertex)
+{
+    return t->s->has_scattering_media ? travel(t, worker, ray, rng_vec2(random), out_vertex)
+                                      : transport_meet(t, worker, ray, out_vertex);
+}
+
+bool transport_travel(const transport *t, eye_worker *worker, scene_ray ray, vec2 u, vertex *out_vertex)
+{
+    if (!t->s->has_scattering_media)
+        return transport_trace(t, worker, ray, out_vertex);
+    if (!travel(t, worker, ray, u, out_vertex))
+        return false;
+    transport_complete(t, out_vertex);
+    return true;
 }
 
 /* Directions whose cosine is above this are one: what is thin bends nothing, and a cone goes through as it is. */
@@ -43,6 +72,11 @@ ray_cone transport_scattered_cone(const transport *t, const vertex *v, const bsd
 void transport_complete(const transport *t, vertex *v)
 {
     const scene *s = t->s;
+    if (v->is_in_medium) {
+        bsdf_init_in_medium(&s->media[v->arrived.medium], vec3_negate(v->arrived.direction), &v->scattering);
+        v->lamp = NULL;
+        return;
+    }
     const shape *where = &s->shapes[v->hit.shape_index];
     bsdf_init(s, &v->hit, vec3_negate(v->arrived.direction), &v->scattering);
     v->lamp = where->light_index == SHAPE_NO_LIGHT ? NULL : &s->lights[where->light_index];

@@ -71,6 +71,15 @@ sample_counts transport_sample_counts(const transport *t, uint32_t lights, bool 
 /* Follows a ray of unit direction to the first surface that scatters. */
 bool transport_trace(const transport *t, eye_worker *worker, scene_ray ray, vertex *out_vertex);
 
+/* Follows a ray of a path of light as transport_trace does, but where a medium on the way scatters light the vertex may
+ * be a point in it: see transmittance_travel. u: decides that; it counts in scenes alone that have such media
+ * (has_scattering_media). Returns whether there is a vertex. */
+bool transport_travel(const transport *t, eye_worker *worker, scene_ray ray, vec2 u, vertex *out_vertex);
+
+/* transport_travel in two steps, as transport_meet and transport_complete are those of transport_trace. It draws from
+ * the random numbers in scenes alone that have media which scatter. */
+bool transport_travel_to(const transport *t, eye_worker *worker, scene_ray ray, rng *random, vertex *out_vertex);
+
 /* transport_trace in two steps, for callers that may not need the second: transport_meet finds the hit, and
  * transport_complete how the vertex scatters and whether it shines. */
 bool transport_meet(const transport *t, eye_worker *worker, scene_ray ray, vertex *out_vertex);

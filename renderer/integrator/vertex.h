@@ -1,6 +1,7 @@
-/* vertex.h: a vertex of a camera path or gather ray, and all that follows from its lying on a surface: rays that leave
- * it, its emission, where its photons lie. Integrators use these functions and read the vertex's BSDF; of the hit
- * itself they read no more than layers and fans of rays need. A vertex in a medium would therefore have its place here.
+/* vertex.h: a vertex of a camera path or gather ray, and all that follows from its lying on a surface or in a medium:
+ * rays that leave it, its emission, where its photons lie. Integrators use these functions and read the vertex's BSDF;
+ * of the hit itself they read no more than layers and fans of rays need. In a medium the BSDF is the phase function, a
+ * traced lobe, and the hit a point of no surface; so most of what integrators do is the same there.
  * Flow: transport traces rays to vertices -> [here] -> integrators. Threads: pure functions. */
 #ifndef AFTERGLOW_VERTEX_H
 #define AFTERGLOW_VERTEX_H
@@ -12,8 +13,10 @@ typedef struct vertex {
     surface_hit hit;
     bsdf scattering;
     scene_ray arrived; /* of unit direction, in the medium of its last stretch */
-    rgb transmittance; /* of the way here; where the ray escapes this member alone is set */
+    rgb transmittance; /* of the way here; where the ray has travelled (transport_travel), over the probability that it
+                          came here. Where it escapes this member alone is set */
     const light *lamp; /* the area light that shines there, or NULL */
+    bool is_in_medium; /* a medium has scattered the ray: the hit has no shape */
 } vertex;
 
 static inline vec3 vertex_position(const vertex *v) { return v->hit.position; }

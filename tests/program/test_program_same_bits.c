@@ -26,6 +26,7 @@ static const long long PHOTON_COUNT = IS_SANITIZED ? 5000 : 20000;
 #define MOTION       PROGRAM_SCENES "moving_blocks.pbrt"
 #define DEFORMATION  PROGRAM_SCENES "deforming_blocks.pbrt"
 #define COINCIDENCES PROGRAM_SCENES "coincidences.pbrt"
+#define FOG          PROGRAM_SCENES "foggy_room.pbrt"
 #define PRINCIPLED   PROGRAM_SCENES "principled.pbrt" /* coats and rough metal */
 
 static void expect_same(const char *what, const picture *p, const picture *reference)
@@ -90,6 +91,12 @@ static void test_plain_room(void **state)
 {
     (void)state;
     expect_same_for_all_threads(BOX, NULL);
+}
+
+static void test_fog(void **state)
+{
+    (void)state;
+    expect_same_for_all_threads(FOG, NULL);
 }
 
 static void test_coincidences(void **state)
@@ -240,6 +247,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         TEST_IN_FOLDER(test_plain_room),
+        TEST_IN_FOLDER(test_fog),
         TEST_IN_FOLDER(test_coincidences),
         TEST_IN_FOLDER(test_motion),
         TEST_IN_FOLDER(test_deformation),

@@ -26,18 +26,44 @@ static void absorption_is_read(void **state)
     assert_rgb(absorption_of("\"rgb sigma_a\" [1 2 3] \"rgb sigma_s\" [0 0 0]", 0), 1, 2, 3, 0);
     assert_rgb(absorption_of("\"rgb sigma_a\" [1 2 3] \"rgb sigma_s\" [0 0 0] \"float scale\" 10 \"float g\" 0.7", 0),
                10, 20, 30, 0);
-    /* as pbrt, both are 1 by default; the second is not simulated */
-    assert_rgb(absorption_of("", 1), 1, 1, 1, 0);
+    assert_rgb(absorption_of("", 0), 1, 1, 1, 0); /* as in pbrt */
     assert_rgb(absorption_of("\"rgb sigma_s\" [0 0 0]", 0), 1, 1, 1, 0);
     assert_rgb(absorption_of("\"rgb sigma_a\" [0 0 0] \"float scale\" 0", 0), 0, 0, 0, 0);
     /* presets come before what is given beside them, as in pbrt; what is not known does not */
-    assert_rgb(absorption_of("\"string preset\" \"Merlot\"", 1), 0.11632, 0.25191, 0.29434, 1e-7);
-    assert_rgb(absorption_of("\"string preset\" \"Pacific Ocean Surface Water\" \"float scale\" 1000", 1), 31.845,
+    assert_rgb(absorption_of("\"string preset\" \"Merlot\"", 0), 0.11632, 0.25191, 0.29434, 1e-7);
+    assert_rgb(absorption_of("\"string preset\" \"Pacific Ocean Surface Water\" \"float scale\" 1000", 0), 31.845,
                31.324, 30.147, 1e-4);
     assert_rgb(absorption_of("\"string preset\" \"Water\" \"rgb sigma_a\" [1 2 3] \"rgb sigma_s\" [0 0 0]", 1), 1, 2, 3,
                0);
     assert_rgb(absorption_of("\"rgb Le\" [1 1 1] \"rgb sigma_s\" [0 0 0]", 1), 1, 1, 1, 0);
     assert_rgb(absorption_of("\"rgb sigma_s\" [0 0 0] \"float thickness\" 1", 1), 1, 1, 1, 0);
+}
+
+static void scattering_is_read(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *parameters;
+        double r, g, b, mean_cosine;
+    } CASES[] = {
+        {"", 1, 1, 1, 0}, /* as in pbrt */
+        {"\"rgb sigma_s\" [1 2 3] \"float g\" -0.75", 1, 2, 3, -0.75},
+        {"\"rgb sigma_a\" [0 0 0] \"rgb sigma_s\" [1 2 3] \"float scale\" 0.5", 0.5, 1, 1.5, 0},
+        {"\"spectrum sigma_s\" [300 4 900 4]", 4, 4, 4, 0},
+        {"\"string preset\" \"Marble\" \"float scale\" 10 \"float g\" 0.25", 21.9, 26.2, 30, 0.25},
+        {"\"float scale\" 0", 0, 0, 0, 0},
+    };
+    for (size_t i = 0; i < sizeof CASES / sizeof *CASES; i++) {
+        char text[512];
+        snprintf(text, sizeof text, "MakeNamedMedium \"m\" \"string type\" \"homogeneous\" %s WorldBegin",
+                 CASES[i].parameters);
+        reading r = reading_of(text);
+        const medium *m = &r.scene->media[0];
+        assert_rgb(m->sigma_s, CASES[i].r, CASES[i].g, CASES[i].b, 1e-4);
+        assert_true((double)m->g == CASES[i].mean_cosine);
+        assert_int_equal(medium_scatters(m), CASES[i].b > 0);
+        reading_destroy(&r);
+    }
 }
 
 /* The current transform does not scale it; an Attribute gives what it does not say itself. */
@@ -85,9 +111,6 @@ static void what_varies_gets_its_mean(void **state)
          0, 0, 0},
         {"\"nanovdb\" \"string filename\" \"smoke.nvdb\"",
          "media of type \"nanovdb\" are not supported: \"m\" neither absorbs nor scatters, as do any others", 0, 0, 0},
-        {"\"homogeneous\" \"rgb sigma_a\" [1 2 3]",
-         "media that scatter light are not supported: \"m\" only absorbs, by its \"sigma_a\", as do any others", 1, 2,
-         3},
         {"\"homogeneous\" \"rgb sigma_s\" [0 0 0] \"rgb Le\" [0 0 1]",
          "media that emit light are not supported: \"Le\" of \"m\" is ignored, as are any others", 1, 1, 1},
         {"\"homogeneous\" \"rgb sigma_s\" [0 0 0] \"string preset\" \"Tea\"",
@@ -212,6 +235,17 @@ static void errors_name_their_location(void **state)
          "t:1:74: error: it absorbs more than a float holds"},
         {"MakeNamedMedium \"m\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [-1 1 1] WorldBegin",
          "t:1:49: error: \"rgb sigma_a\" has a negative component, -1"},
+        {"MakeNamedMedium \"m\" \"string type\" \"homogeneous\" \"rgb sigma_s\" [0 -2 0] WorldBegin",
+         "t:1:49: error: \"rgb sigma_s\" has a negative component, -2"},
+        {"MakeNamedMedium \"m\" \"string type\" \"homogeneous\" \"spectrum sigma_s\" [400 -1 700 1] WorldBegin",
+         "t:1:49: error: \"spectrum sigma_s\" has a negative value, -1"},
+        {"MakeNamedMedium \"m\" \"string type\" \"homogeneous\" \"rgb sigma_s\" [1 1e30 1] \"float scale\" 1e30 "
+         "WorldBegin",
+         "t:1:74: error: it scatters more than a float holds"},
+        {"MakeNamedMedium \"m\" \"string type\" \"homogeneous\" \"float g\" 1 WorldBegin",
+         "t:1:49: error: \"g\" should be more than -1 and less than 1"},
+        {"MakeNamedMedium \"m\" \"string type\" \"homogeneous\"\n\"float g\" -1.5 WorldBegin",
+         "t:2:1: error: \"g\" should be more than -1 and less than 1"},
         {"MakeNamedMedium \"m\" \"string type\" \"homogeneous\" \"float sigma_a\" 1 WorldBegin",
          "t:1:49: error: \"float sigma_a\" should be \"rgb sigma_a\""},
         {"MakeNamedMedium \"m\" \"string type\" \"uniformgrid\" WorldBegin",
@@ -239,6 +273,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(absorption_is_read),
+        cmocka_unit_test(scattering_is_read),
         cmocka_unit_test(absorption_is_the_same_everywhere),
         cmocka_unit_test(what_varies_gets_its_mean),
         cmocka_unit_test(sides_are_kept),

@@ -64,6 +64,8 @@ static void test_same_and_other(void **state)
 
     static const char *const changes[][2] = {
         {"sigma_a\" [.1 .2 .3]", "sigma_a\" [.1 .2 .4]"},
+        {"sigma_s\" [0 0 0]", "sigma_s\" [0 0 1]"},
+        {"sigma_s\" [0 0 0]", "sigma_s\" [0 0 0] \"float g\" 0.5"},
         {"tex2\" [.4 .5 .6]", "tex2\" [.4 .5 .7]"},
         {"[1 2 3] \"float", "[1 2 4] \"float"},
         {"coneangle\" 40", "coneangle\" 41"},

@@ -28,7 +28,7 @@ typedef enum ag_layer {
     AG_LAYER_DIRECT = 1 << 7,        /* straight from lamps, reflected by the first surface's diffuse lobes */
     AG_LAYER_INDIRECT = 1 << 8,      /* light of further bounces, reflected by these lobes, without caustics */
     AG_LAYER_CAUSTIC = 1 << 9,       /* light that reached these lobes from lamps by way of mirrors and glass alone */
-    AG_LAYER_SPECULAR = 1 << 10,     /* all light by the first surface's other lobes */
+    AG_LAYER_SPECULAR = 1 << 10,     /* all light by the first surface's other lobes, or a medium */
     AG_LAYER_IRRADIANCE = 1 << 11,   /* irradiance.R, G, B: of the photon map at the first surface, W/m^2 */
     AG_LAYER_VARIANCE = 1 << 12,     /* variance.R, G, B: of the pixel's samples (not of their mean) */
     AG_LAYER_SAMPLES = 1 << 13,      /* samples.V: the pixel's number of samples */

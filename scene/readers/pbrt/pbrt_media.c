@@ -1,7 +1,7 @@
 /* pbrt_media.c: MakeNamedMedium and MediumInterface of a pbrt-v4 scene.
  * Rests on the format's description, pbrt.org/fileformat-v4, "Participating media"; defaults as in pbrt-v4's media.cpp.
- * Media that scatter, or vary from point to point, get a stand-in that absorbs alike everywhere; those that do both,
- * one that does nothing.
+ * Media that vary from point to point get a stand-in that absorbs alike everywhere; those that scatter too, one that
+ * does nothing.
  * Flow: pbrt_parser -> [here] -> scene.media; shapes, lights and the camera use them. Threads: one per scene. */
 #define _POSIX_C_SOURCE 200809L
 #include "pbrt/pbrt_private.h"
@@ -9,15 +9,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-/* Scattering within a medium is not simulated. Its absorption alone is nearest to it: light that scatters is not lost,
- * and most liquids scatter it forwards. */
-static void tell_scattering(pbrt_parser *parser, const parameter_list *list)
-{
-    log_at_once(parser->log, AG_LOG_WARNING, list->where, "scattering medium",
-                "media that scatter light are not supported: \"%s\" only absorbs, by its \"sigma_a\", as do any others",
-                list->name);
-}
 
 static ag_status tell_emission(pbrt_parser *parser, parameter_list *list)
 {
@@ -40,10 +31,23 @@ static ag_status read_scale(pbrt_parser *parser, parameter_list *list, float *ou
 }
 
 /* scale is a product with a mean, which may overflow. */
+static rgb scaled(rgb sigma, double scale)
+{
+    return rgb_make((float)(sigma.r * scale), (float)(sigma.g * scale), (float)(sigma.b * scale));
+}
+
 static ag_status set_absorption(pbrt_parser *parser, const parameter_list *list, rgb sigma_a, double scale, medium *m)
 {
-    m->sigma_a = rgb_make((float)(sigma_a.r * scale), (float)(sigma_a.g * scale), (float)(sigma_a.b * scale));
+    m->sigma_a = scaled(sigma_a, scale);
     return rgb_is_finite(m->sigma_a) ? AG_OK : pbrt_refuse(parser, list, "scale", "it absorbs more than a float holds");
+}
+
+static ag_status set_scattering(pbrt_parser *parser, const parameter_list *list, rgb sigma_s, double scale, medium *m)
+{
+    m->sigma_s = scaled(sigma_s, scale);
+    return rgb_is_finite(medium_extinction(m))
+               ? AG_OK
+               : pbrt_refuse(parser, list, "scale", "it scatters more than a float holds");
 }
 
 /* As pbrt: "sigma_a" and "sigma_s", 1 per unit by default, count where no preset is given that is known; neither is
@@ -52,7 +56,7 @@ static ag_status read_homogeneous(pbrt_parser *parser, parameter_list *list, med
 {
     const char *preset = "";
     rgb sigma_a = rgb_gray(1.0f), sigma_s = rgb_gray(1.0f);
-    float scale, g = 0.0f;
+    float scale;
     AG_TRY(parameter_get_string(list, parser->log, "preset", &preset));
     if (!preset[0] || !medium_find_preset(preset, &sigma_a, &sigma_s)) {
         if (preset[0])
@@ -62,14 +66,16 @@ static ag_status read_homogeneous(pbrt_parser *parser, parameter_list *list, med
         AG_TRY(parameter_get_rgb(list, parser->log, "sigma_s", &sigma_s));
     } else {
         sigma_a = working_space_light(&parser->scene->space, sigma_a);
+        sigma_s = working_space_light(&parser->scene->space, sigma_s);
     }
     AG_TRY(read_scale(parser, list, &scale));
-    AG_TRY(parameter_get_float(list, parser->log, "g", &g)); /* of scattering */
+    AG_TRY(parameter_get_float(list, parser->log, "g", &m->g));
+    if (!(fabsf(m->g) < 1.0f))
+        return pbrt_refuse(parser, list, "g", "\"g\" should be more than -1 and less than 1");
     AG_TRY(tell_emission(parser, list));
-    if (!rgb_is_black(sigma_s) && scale > 0.0f)
-        tell_scattering(parser, list);
     parameter_list_warn_unused(list, parser->log);
-    return set_absorption(parser, list, sigma_a, (double)scale, m);
+    AG_TRY(set_absorption(parser, list, sigma_a, (double)scale, m));
+    return set_scattering(parser, list, sigma_s, (double)scale, m);
 }
 
 /* The mean of one of `components` components. */
@@ -196,7 +202,7 @@ static ag_status find_or_reserve(pbrt_parser *parser, const char *name, file_loc
         parser->named_media = larger;
     }
     pbrt_named_medium added = {.where = where};
-    const medium nothing = {.sigma_a = {0.0f, 0.0f, 0.0f}};
+    const medium nothing = {.g = 0.0f};
     AG_TRY(scene_add_medium(parser->scene, &nothing, &added.index));
     added.name = strdup(name);
     if (!added.name || name_table_set(&parser->medium_names, name, (uint32_t)count)) {
@@ -218,7 +224,7 @@ static ag_status make_named(pbrt_parser *parser, parameter_list *list)
         return pbrt_error(parser, list->where, strlen("MakeNamedMedium"),
                           "medium \"%s\" is made twice, first at %s:%d:%d", list->name, named->where.file,
                           named->where.line, named->where.column);
-    medium made = {.sigma_a = {0.0f, 0.0f, 0.0f}};
+    medium made = {.g = 0.0f};
     AG_TRY(read_medium(parser, list, &made));
     parser->scene->media[named->index] = made;
     named->is_defined = true;
