@@ -16,7 +16,7 @@ static ag_context *context; /* for the signal handler */
 static void on_interrupt(int number)
 {
     (void)number;
-    ag_context_cancel(context); /* what is under way returns AG_CANCELLED, within 50 ms */
+    ag_context_cancel(context); /* what is under way soon returns AG_CANCELLED */
 }
 
 /* All that goes wrong is told here; calls return no more than a status. */

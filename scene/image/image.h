@@ -36,6 +36,15 @@ typedef enum image_wish {
     IMAGE_COMPACT_COLORS /* as bytes where the file has 8 bits, else as floats */
 } image_wish;
 
+/* Whether reading is to end. Asked by the thread that reads, before each piece of a picture. */
+typedef bool image_cancelled_fn(const void *user);
+
+typedef struct image_request {
+    image_wish wish;
+    image_cancelled_fn *is_cancelled; /* NULL: it never is */
+    const void *user;                 /* for is_cancelled; borrowed */
+} image_request;
+
 /* A file that holds tiles, and coarser levels as the one before halved. */
 enum { IMAGE_LEVELS_MAX = 32 };
 typedef struct image_level {

@@ -34,8 +34,16 @@ const size_t jpeg_text_limit = 16384; /* ... and when metadata do not fit into a
 const std::uint64_t trusted_values = std::uint64_t(1) << 28;
 const std::uint64_t values_per_byte = std::uint64_t(1) << 16;
 
+/* Decoded bytes between two questions whether reading is to end: some 20 ms of the slowest format. */
+const std::uint64_t piece_bytes = std::uint64_t(1) << 20;
+/* Strips of a TIFF file that are larger are read row by row, which takes zlib twice the time of a whole strip. */
+const std::uint64_t largest_strip_bytes = std::uint64_t(1) << 23;
+
 const int largest_tile_bits = 9; /* TEXTURE_TILE_BITS_MAX */
 const int least_tile_bits = 3;   /* reading smaller ones one by one costs more than their pixels are worth */
+
+struct cancelled {
+}; /* thrown where reading is to end */
 
 /* Runs work and is the only function where an exception becomes a status. */
 template <typename Work>
@@ -48,6 +56,8 @@ ag_status guarded(ag_status failure, char *message, size_t message_size, Work &&
     } catch (const std::bad_alloc &) {
         std::snprintf(message, message_size, "out of memory");
         return AG_ERROR_MEMORY;
+    } catch (const cancelled &) {
+        return AG_CANCELLED;
     } catch (const std::exception &exception) {
         std::snprintf(message, message_size, "%s", exception.what());
     } catch (...) {
@@ -191,8 +201,8 @@ image_sample_type sample_type_of(OIIO::TypeDesc format)
     }
 }
 
-/* The values of the picture. Throws where there are more than the file can hold, before they take memory. */
-std::uint64_t count_values(const OIIO::ImageSpec &spec, std::uint64_t file_size)
+/* Throws where the picture has more values than the file can hold, before they take memory. */
+void check_size(const OIIO::ImageSpec &spec, std::uint64_t file_size)
 {
     const std::uint64_t pixels = static_cast<std::uint64_t>(spec.width) * static_cast<std::uint64_t>(spec.height);
     const std::uint64_t channels = static_cast<std::uint64_t>(spec.nchannels);
@@ -201,7 +211,6 @@ std::uint64_t count_values(const OIIO::ImageSpec &spec, std::uint64_t file_size)
         throw std::runtime_error("its header promises " + std::to_string(spec.width) + " x " +
                                  std::to_string(spec.height) + " pixels of " + std::to_string(spec.nchannels) +
                                  " channels, which a file of " + std::to_string(file_size) + " bytes cannot hold");
-    return pixels * channels;
 }
 
 /* How many channels from here on are red, green, blue and alpha of one layer, by their names. */
@@ -241,17 +250,114 @@ channel_range find_colors(const OIIO::ImageSpec &spec)
     return {0, spec.nchannels};
 }
 
-template <typename Value>
-Value *read_values(OIIO::ImageInput &input, channel_range channels, std::uint64_t pixel_count, OIIO::TypeDesc type)
+void end_if_cancelled(const image_request &request)
 {
-    const std::uint64_t count = pixel_count * static_cast<std::uint64_t>(channels.count);
-    std::unique_ptr<Value, decltype(&std::free)> values(static_cast<Value *>(std::malloc(count * sizeof(Value))),
-                                                        &std::free);
+    if (request.is_cancelled && request.is_cancelled(request.user))
+        throw cancelled();
+}
+
+/* The rows that OpenEXR packs together, by its file format's table of compressions. */
+int exr_block_rows(const std::string &compression)
+{
+    if (compression == "none" || compression == "rle" || compression == "zips")
+        return 1;
+    if (compression == "zip" || compression == "pxr24")
+        return 16;
+    return compression == "piz" || compression == "b44" || compression == "b44a" || compression == "dwaa" ? 32 : 256;
+}
+
+/* The rows that are best read together. Those of a strip of a TIFF file can be had one by one, unless each channel has
+ * strips of its own: then each row would be searched from the beginning of all of them. */
+int block_rows(const OIIO::ImageInput &input, const OIIO::ImageSpec &spec)
+{
+    const std::string format = input.format_name();
+    if (format == "openexr")
+        return exr_block_rows(spec.get_string_attribute("compression"));
+    if (format != "tiff")
+        return 1;
+    const int told = spec.get_int_attribute("tiff:RowsPerStrip", 0);
+    const int rows = told > 0 ? std::min(told, spec.height) : spec.height;
+    const bool is_apart = spec.get_int_attribute("tiff:PlanarConfiguration", 1) != 1;
+    return !is_apart && static_cast<std::uint64_t>(rows) * spec.scanline_bytes(true) > largest_strip_bytes ? 1 : rows;
+}
+
+/* So many blocks that they are a piece, at least one. */
+int blocks_of_piece(std::uint64_t block_bytes)
+{
+    return static_cast<int>(std::max<std::uint64_t>(piece_bytes / std::max<std::uint64_t>(block_bytes, 1), 1));
+}
+
+/* The end of a piece that begins at `at`. */
+int piece_end(int at, int block_size, int block_count, int end)
+{
+    return static_cast<int>(std::min<std::int64_t>(at + static_cast<std::int64_t>(block_size) * block_count, end));
+}
+
+/* Where the pixels go. */
+struct pixel_sink {
+    unsigned char *bytes;
+    OIIO::TypeDesc type;
+    OIIO::stride_t pixel_size, row_size;
+};
+
+void read_rows(OIIO::ImageInput &input, const OIIO::ImageSpec &spec, const image_request &request,
+               channel_range channels, const pixel_sink &sink)
+{
+    const int rows = block_rows(input, spec), bottom = spec.y + spec.height;
+    const int count = blocks_of_piece(static_cast<std::uint64_t>(rows) * spec.scanline_bytes(true));
+    for (int y = spec.y, end; y < bottom; y = end) {
+        end_if_cancelled(request);
+        end = piece_end(y, rows, count, bottom);
+        if (!input.read_scanlines(0, 0, y, end, spec.z, channels.begin, channels.begin + channels.count, sink.type,
+                                  sink.bytes + (y - spec.y) * sink.row_size, sink.pixel_size, sink.row_size))
+            fail("OpenImageIO cannot decode it", input.geterror());
+    }
+}
+
+void read_tile_rows(OIIO::ImageInput &input, const OIIO::ImageSpec &spec, const image_request &request,
+                    channel_range channels, const pixel_sink &sink)
+{
+    const int right = spec.x + spec.width, bottom = spec.y + spec.height;
+    const int count = blocks_of_piece(spec.tile_bytes(true));
+    for (int y = spec.y, y_end; y < bottom; y = y_end) {
+        y_end = piece_end(y, spec.tile_height, 1, bottom);
+        for (int x = spec.x, x_end; x < right; x = x_end) {
+            end_if_cancelled(request);
+            x_end = piece_end(x, spec.tile_width, count, right);
+            if (!input.read_tiles(0, 0, x, x_end, y, y_end, spec.z, spec.z + 1, channels.begin,
+                                  channels.begin + channels.count, sink.type,
+                                  sink.bytes + (y - spec.y) * sink.row_size + (x - spec.x) * sink.pixel_size,
+                                  sink.pixel_size, sink.row_size))
+                fail("OpenImageIO cannot decode it", input.geterror());
+        }
+    }
+}
+
+struct free_memory {
+    void operator()(void *memory) const noexcept { std::free(memory); }
+};
+
+/* From malloc, as its owner frees it. */
+template <typename Value>
+using pixel_values = std::unique_ptr<Value, free_memory>;
+
+template <typename Value>
+pixel_values<Value> read_values(OIIO::ImageInput &input, const OIIO::ImageSpec &spec, const image_request &request,
+                                channel_range channels, OIIO::TypeDesc type)
+{
+    const size_t row_values = static_cast<size_t>(spec.width) * static_cast<size_t>(channels.count);
+    const size_t row_size = row_values * sizeof(Value);
+    pixel_values<Value> values(static_cast<Value *>(std::malloc(row_size * static_cast<size_t>(spec.height))));
     if (!values)
         throw std::bad_alloc();
-    if (!input.read_image(0, 0, channels.begin, channels.begin + channels.count, type, values.get()))
-        fail("OpenImageIO cannot decode it", input.geterror());
-    return values.release();
+    const pixel_sink sink = {reinterpret_cast<unsigned char *>(values.get()), type,
+                             static_cast<OIIO::stride_t>(static_cast<size_t>(channels.count) * sizeof(Value)),
+                             static_cast<OIIO::stride_t>(row_size)};
+    if (spec.tile_width > 0)
+        read_tile_rows(input, spec, request, channels, sink);
+    else
+        read_rows(input, spec, request, channels, sink);
+    return values;
 }
 
 /* The difference of two numbers of a file, clamped to the range of int. */
@@ -284,7 +390,7 @@ image describe(const OIIO::ImageSpec &spec)
 }
 
 /* Whether an open file holds pictures beside the first: of Photoshop's files and icons these are layers and sizes of
- * it. */
+ * it. The file then stands at another one. HEIF's reader decodes each picture that it is asked for. */
 bool has_several(OIIO::ImageInput &input)
 {
     const std::string format = input.format_name();
@@ -292,8 +398,6 @@ bool has_several(OIIO::ImageInput &input)
         return false;
     const bool has = input.seek_subimage(1, 0);
     input.geterror(); /* that there is none is no error */
-    if (!input.seek_subimage(0, 0))
-        fail("OpenImageIO cannot go back to its first part", input.geterror());
     return has;
 }
 
@@ -327,8 +431,10 @@ std::unique_ptr<OIIO::ImageInput> open_input(const std::string &path, const char
 }
 
 /* proxy: the file's bytes, or NULL: they are read from path. */
-image read_picture(const std::string &path, const char *name, image_wish wish, OIIO::Filesystem::IOProxy *proxy)
+image read_picture(const std::string &path, const char *name, const image_request &request,
+                   OIIO::Filesystem::IOProxy *proxy)
 {
+    end_if_cancelled(request);
     const std::unique_ptr<OIIO::ImageInput> input = open_input(path, name, proxy);
     const OIIO::ImageSpec spec = input->spec();
     if (spec.deep)
@@ -337,36 +443,40 @@ image read_picture(const std::string &path, const char *name, image_wish wish, O
     if (spec.width < 1 || spec.height < 1 || spec.depth > 1 || spec.nchannels < 1)
         throw std::runtime_error("it is not a flat picture");
     image read = describe(spec);
-    read.is_first_of_several = has_several(*input);
     channel_range channels = find_colors(spec);
-    if (wish == IMAGE_ALL_CHANNELS)
+    if (request.wish == IMAGE_ALL_CHANNELS)
         channels.count = spec.nchannels - channels.begin;
     read.channel_count = channels.count;
-    const std::uint64_t pixel_count = count_values(spec, proxy ? proxy->size() : OIIO::Filesystem::file_size(path)) /
-                                      static_cast<std::uint64_t>(spec.nchannels);
-    if (wish == IMAGE_COMPACT_COLORS && read.type == IMAGE_UINT8)
-        read.bytes = read_values<unsigned char>(*input, channels, pixel_count, OIIO::TypeUInt8);
+    check_size(spec, proxy ? proxy->size() : OIIO::Filesystem::file_size(path));
+    pixel_values<unsigned char> bytes;
+    pixel_values<float> floats;
+    if (request.wish == IMAGE_COMPACT_COLORS && read.type == IMAGE_UINT8)
+        bytes = read_values<unsigned char>(*input, spec, request, channels, OIIO::TypeUInt8);
     else
-        read.pixels = read_values<float>(*input, channels, pixel_count, OIIO::TypeFloat);
+        floats = read_values<float>(*input, spec, request, channels, OIIO::TypeFloat);
+    end_if_cancelled(request);
+    read.is_first_of_several = has_several(*input);
+    read.bytes = bytes.release();
+    read.pixels = floats.release();
     return read;
 }
 
-ag_status decode(const char *path, const char *name, image_wish wish, image *out_image, char *message,
+ag_status decode(const char *path, const char *name, const image_request *request, image *out_image, char *message,
                  size_t message_size) noexcept
 {
     *out_image = image();
     return guarded(AG_ERROR_INPUT, message, message_size,
-                   [=] { *out_image = read_picture(path, name, wish, nullptr); });
+                   [=] { *out_image = read_picture(path, name, *request, nullptr); });
 }
 
-ag_status decode_memory(const char *extension, const unsigned char *bytes, size_t size, image_wish wish,
+ag_status decode_memory(const char *extension, const unsigned char *bytes, size_t size, const image_request *request,
                         image *out_image, char *message, size_t message_size) noexcept
 {
     *out_image = image();
     return guarded(AG_ERROR_INPUT, message, message_size, [=] {
         OIIO::Filesystem::IOMemReader proxy(const_cast<unsigned char *>(bytes), size); /* which only reads */
         const std::string name = std::string("picture.") + extension;
-        *out_image = read_picture(name, name.c_str(), wish, &proxy);
+        *out_image = read_picture(name, name.c_str(), *request, &proxy);
     });
 }
 
@@ -380,6 +490,9 @@ int bits_of_side(int side)
             return bits;
     return -1;
 }
+
+/* Other readers have no coarser levels, and some of them decode a picture as they open it. */
+bool may_have_levels(const std::string &reader) { return reader == "openexr" || reader == "tiff" || reader == "dds"; }
 
 bool is_half_of(int side, int before) { return side == std::max(before / 2, 1) || side == (before + 1) / 2; }
 
@@ -412,6 +525,8 @@ ag_status open_levels(const char *path, const char *name, void **out_file, image
     *out_file = nullptr;
     *out_header = image_levels_header();
     return guarded(AG_ERROR_INPUT, message, message_size, [=] {
+        if (!may_have_levels(find_reader(path, name, nullptr)))
+            return;
         std::unique_ptr<OIIO::ImageInput> input = open_input(path, name, nullptr);
         image_levels_header header = image_levels_header();
         OIIO::ImageSpec spec = input->spec();
@@ -420,9 +535,11 @@ ag_status open_levels(const char *path, const char *name, void **out_file, image
             return;
         header.picture = describe(spec);
         header.picture.is_first_of_several = has_several(*input);
+        if (!input->seek_subimage(0, 0))
+            fail("OpenImageIO cannot go back to its first part", input->geterror());
         header.file_channel_count = spec.nchannels;
         header.picture.channel_count = find_colors(spec).count;
-        count_values(spec, OIIO::Filesystem::file_size(path));
+        check_size(spec, OIIO::Filesystem::file_size(path));
         while (header.level_count < IMAGE_LEVELS_MAX && is_usable_level(spec, header)) {
             header.levels[header.level_count++] = {spec.width, spec.height, bits_of_side(spec.tile_width),
                                                    bits_of_side(spec.tile_height)};

@@ -35,16 +35,23 @@ static void name_file(char *text, size_t size, const char *opened, const char *p
     }
 }
 
+static bool is_cancelled(const void *run) { return run_is_cancelled(run); }
+
+static image_request make_request(const run_context *run, image_wish wish)
+{
+    return (image_request){.wish = wish, .is_cancelled = run ? is_cancelled : NULL, .user = run};
+}
+
 /* The first bytes tell the format, and the name's end where they do not. */
-static ag_status decode_file(const image_module *module, const char *opened, const char *path, image_wish wish,
-                             image *out_image, char *reason, size_t reason_size)
+static ag_status decode_file(const image_module *module, const char *opened, const char *path,
+                             const image_request *request, image *out_image, char *reason, size_t reason_size)
 {
     const char *wrong = png_file_chunks_wrong(opened);
     if (wrong) {
         snprintf(reason, reason_size, "%s", wrong);
         return AG_ERROR_INPUT;
     }
-    ag_status status = module->decode(opened, path, wish, out_image, reason, reason_size);
+    ag_status status = module->decode(opened, path, request, out_image, reason, reason_size);
     if (status == AG_OK && jpeg_file_is_cut_short(opened))
         status = refuse_cut_jpeg(out_image, reason, reason_size);
     name_file(reason, reason_size, opened, path);
@@ -60,9 +67,10 @@ static ag_status read_picture(const run_context *run, const char *path, image_wi
     ag_status status = AG_ERROR_INPUT;
     if (descriptor >= 0) {
         const image_module *module = image_module_get(message, message_size);
+        const image_request request = make_request(run, wish);
         if (module)
-            status = decode_file(module, input_file_opened_path(descriptor, path, text), path, wish, out_image, reason,
-                                 sizeof reason);
+            status = decode_file(module, input_file_opened_path(descriptor, path, text), path, &request, out_image,
+                                 reason, sizeof reason);
         close(descriptor);
         if (!module)
             return AG_ERROR_SYSTEM;
@@ -98,8 +106,8 @@ static const char *extension_of(const unsigned char *bytes, size_t size)
     return size >= sizeof JPEG && memcmp(bytes, JPEG, sizeof JPEG) == 0 ? "jpg" : NULL;
 }
 
-ag_status image_read_memory(const char *name, const unsigned char *bytes, size_t size, image *out_image, char *message,
-                            size_t message_size)
+ag_status image_read_memory(const run_context *run, const char *name, const unsigned char *bytes, size_t size,
+                            image *out_image, char *message, size_t message_size)
 {
     *out_image = (image){0};
     const char *extension = extension_of(bytes, size);
@@ -116,8 +124,8 @@ ag_status image_read_memory(const char *name, const unsigned char *bytes, size_t
     if (!module)
         return AG_ERROR_SYSTEM;
     char reason[1024];
-    ag_status status =
-        module->decode_memory(extension, bytes, size, IMAGE_COMPACT_COLORS, out_image, reason, sizeof reason);
+    const image_request request = make_request(run, IMAGE_COMPACT_COLORS);
+    ag_status status = module->decode_memory(extension, bytes, size, &request, out_image, reason, sizeof reason);
     if (status == AG_OK && jpeg_is_cut_short(bytes, size))
         status = refuse_cut_jpeg(out_image, reason, sizeof reason);
     if (status != AG_OK)

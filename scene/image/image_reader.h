@@ -15,7 +15,8 @@
 ag_status image_read(const char *path, image *out_image, char *message, size_t message_size);
 
 /* image_read of the colours alone: what textures and lights are made of. The file is opened as of input_file_open,
- * which asks the run's inputs; run may be NULL. */
+ * which asks the run's inputs; run may be NULL. Where the run is cancelled reading ends with AG_CANCELLED, before the
+ * next piece of the picture (image_module.h says which formats have none). */
 ag_status image_read_colors(const run_context *run, const char *path, image *out_image, char *message,
                             size_t message_size);
 
@@ -23,10 +24,10 @@ ag_status image_read_colors(const run_context *run, const char *path, image *out
 ag_status image_read_compact(const run_context *run, const char *path, image *out_image, char *message,
                              size_t message_size);
 
-/* Reads a PNG or JPEG file in memory, which its first bytes tell apart; values of 8 bits stay bytes. name: for
- * messages. */
-ag_status image_read_memory(const char *name, const unsigned char *bytes, size_t size, image *out_image, char *message,
-                            size_t message_size);
+/* Reads a PNG or JPEG file in memory, which its first bytes tell apart; values of 8 bits stay bytes. run: NULL, or
+ * whom to ask whether to end. name: for messages. Errors: as of image_read_colors. */
+ag_status image_read_memory(const run_context *run, const char *name, const unsigned char *bytes, size_t size,
+                            image *out_image, char *message, size_t message_size);
 
 /* Brings a picture to its display window: what lies outside is cut off, what is missing is 0. name: for messages.
  * Errors: AG_ERROR_INPUT (the picture does not fill a window of more than 2^28 pixels), AG_ERROR_MEMORY. */

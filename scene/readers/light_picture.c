@@ -46,7 +46,7 @@ static size_t clean_pixels(const image_colors *colors, rgb *pixels, size_t count
 static ag_status describe_failure(ag_status status, const char *name, const char *reason, char *message,
                                   size_t message_size)
 {
-    if (status != AG_ERROR_MEMORY)
+    if (status != AG_ERROR_MEMORY && status != AG_CANCELLED)
         snprintf(message, message_size, "cannot %s the picture \"%s\": %s",
                  status == AG_ERROR_COLOR ? "decode" : "read", name, reason);
     return status;

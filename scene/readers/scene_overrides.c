@@ -180,7 +180,12 @@ static ag_status read_sky(run_context *run, scene *s, environment **out_picture,
     *out_picture = light_picture_find_kept(s, path, version, false);
     if (*out_picture)
         return AG_OK;
-    AG_TRY(light_picture_read(NULL, s, path, path, false, &picture, message, message_size));
+    /* the inputs were asked above: what the user names may lie anywhere */
+    struct input_files *const inputs = run->inputs;
+    run->inputs = NULL;
+    const ag_status status = light_picture_read(run, s, path, path, false, &picture, message, message_size);
+    run->inputs = inputs;
+    AG_TRY(status);
     AG_TRY(light_picture_surround(&picture, path, out_picture, message, message_size));
     light_picture_note(s, path, version, false, *out_picture);
     if (picture.is_first_of_several)
@@ -214,9 +219,9 @@ static ag_status add_sky(run_context *run, const compass *c, scene *s)
         status = AG_ERROR_ARGUMENT;
     }
     if (status != AG_OK) {
-        if (status != AG_ERROR_MEMORY && asked->sky_file)
+        if (status != AG_ERROR_MEMORY && status != AG_CANCELLED && asked->sky_file)
             log_message(run->log, AG_LOG_ERROR, "the sky that is asked for, \"%s\": %s", asked->sky_file, message);
-        else if (status != AG_ERROR_MEMORY)
+        else if (status != AG_ERROR_MEMORY && status != AG_CANCELLED)
             log_message(run->log, AG_LOG_ERROR, "the sky that is asked for: %s", message);
         light_reset(&sky);
         return status;

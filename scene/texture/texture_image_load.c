@@ -55,7 +55,7 @@ static ag_status read_image(const scene *s, texture_image *i, const source *from
     if (from->pixels)
         status = image_copy(from->pixels, false, &picture) ? AG_OK : AG_ERROR_MEMORY;
     else if (from->bytes)
-        status = image_read_memory(from->path, from->bytes, from->size, &picture, message, message_size);
+        status = image_read_memory(from->run, from->path, from->bytes, from->size, &picture, message, message_size);
     else
         status = image_read_compact(from->run, from->path, &picture, message, message_size);
     if (status == AG_OK)

@@ -51,6 +51,10 @@ static void cancelled_pictures_are_silent(void **state)
                                                 "Texture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"a.tif\" "
                                                 "\"float gamma\" 2 "
                                                 "Material \"diffuse\" \"texture reflectance\" \"t\" Shape \"sphere\""));
+    expect_cancelled(model_write_text("l.pbrt", "Camera \"perspective\" WorldBegin Scale 1 2 3 "
+                                                "LightSource \"goniometric\" \"string filename\" \"a.tif\""));
+    expect_cancelled(model_write_text("p.pbrt", "Camera \"perspective\" WorldBegin Scale 1 2 3 "
+                                                "LightSource \"projection\" \"string filename\" \"a.tif\""));
     model_write_text("m.mtl", "newmtl m\nd 0\nmap_d a.tif\n");
     expect_cancelled(model_write_text(
         "a.obj", "mtllib m.mtl\nv 0 0 0\nv 3 0 0\nv 0 4 0\nvt 0 0\nvt 1 0\nvt 0 1\nusemtl m\nf 1/1 2/2 3/3\n"));

@@ -44,14 +44,18 @@ AG_API ag_status ag_context_create(const ag_context_settings *settings, ag_conte
  * says so, for the last time; the context is then cancelled for good, and freed with the last of its scenes. */
 AG_API void ag_context_destroy(ag_context *context);
 AG_API unsigned ag_context_thread_count(const ag_context *context);
-/* Makes the call under way return AG_CANCELLED within 50 ms, and all later work with this context too, until
- * ag_context_clear_cancel. Safe in a signal handler. */
+/* Makes the call under way return AG_CANCELLED, and all later work with this context too, until
+ * ag_context_clear_cancel. Work ends within some 50 ms of its threads' own time, which takes longer where they wait for
+ * a CPU. A picture of a texture or light is read in pieces of a megabyte or what its file packs together, and reading
+ * ends after such a piece; where its format is decoded as a whole (interlaced PNG, progressive JPEG, HEIF, AVIF, JPEG
+ * 2000, WebP, GIF, compressed Targa, DDS and others) not before that is done. Safe in a signal handler. */
 AG_API void ag_context_cancel(ag_context *context);
 /* Ends a cancellation: work may begin again with the context and its scenes, and a rendering whose
  * ag_rendering_continue was cancelled may continue, to the same bits. Not to be called while work is under way. */
 AG_API void ag_context_clear_cancel(ag_context *context);
-/* Makes the ag_rendering_continue under way, else the next one, return AG_PAUSED within 50 ms, after whole samples; it
- * may then be called again. No other work is affected. Safe in a signal handler. */
+/* Makes the ag_rendering_continue under way, else the next one, return AG_PAUSED within some 50 ms of its
+ * threads' own time, after whole samples; it may then be called again. No other work is affected. Safe in a signal
+ * handler. */
 AG_API void ag_context_pause(ag_context *context);
 
 /* Moves what `from` keeps of its last picture's photons to `context`, whose own is dropped; for programs that create a

@@ -121,7 +121,7 @@ class Context:
         return result[0]
 
     def cancel(self) -> None:
-        """Calls the work under way off, within 50 ms; from any thread."""
+        """Calls the work under way off, as soon as ag_context_cancel of context.h says; from any thread."""
         library.ag_context_cancel(self._pointer)
 
     def scene(self, editable: bool = False) -> Scene:

@@ -45,10 +45,10 @@ ag_status pbrt_set_light_frame(pbrt_parser *parser, const parameter_list *list, 
     return AG_OK;
 }
 
-/* Tells the reason at its location; memory has none. */
+/* Tells the reason at its location; the end of memory and of the run have none. */
 static ag_status refuse_picture(pbrt_parser *parser, const parameter_list *list, ag_status status, const char *message)
 {
-    if (status != AG_ERROR_MEMORY)
+    if (status != AG_ERROR_MEMORY && status != AG_CANCELLED)
         pbrt_refuse(parser, list, "filename", "%s", message);
     return status;
 }
