@@ -58,7 +58,7 @@ typedef struct material {
     /* Principled materials, whose reflectance is the base colour, and ior >= 1 or 0 (infinite): */
     float metallic;            /* [0, 1] */
     float roughness;           /* as it is perceived, [0, 1]; of this the square is alpha_u, and alpha_v too */
-    float roughness_v;         /* likewise, of alpha_v alone; less than 0: that of u */
+    float roughness_v;         /* as it is perceived, of which alpha_v alone is the square; less than 0: that of u */
     float anisotropy;          /* strength of KHR_materials_anisotropy, which makes alpha_u larger; [0, 1] */
     float transmission;        /* share of what enters a dielectric that goes through, [0, 1] */
     float specular;            /* of the dielectric's reflection, [0, 1] */
@@ -84,8 +84,8 @@ typedef struct material {
             uint32_t eta_texture, k_texture; /* conductor, from air */
             uint32_t base_alpha_u_texture, base_alpha_v_texture;
             uint32_t metallic_texture, roughness_texture, transmission_texture, specular_texture,
-                specular_color_texture, clearcoat_texture, clearcoat_roughness_texture;               /* principled */
-            uint32_t sheen_texture, sheen_roughness_texture, roughness_v_texture, anisotropy_texture; /* too */
+                specular_color_texture, clearcoat_texture, clearcoat_roughness_texture, sheen_texture,
+                sheen_roughness_texture, roughness_v_texture, anisotropy_texture; /* principled */
         };
         uint32_t value_textures[20]; /* all of these */
     };
@@ -96,10 +96,12 @@ typedef struct material {
     uint32_t normal_map_texture;   /* a colour: 2 c - 1 is the normal along dp/du, dp/dv and the shading normal */
     float normal_scale;            /* factor of its first two components, usually 1 */
 
-    /* The direction along which alpha_u is the roughness: dp/du, turned by these. For a mix, as above. */
-    float grain_turn;       /* in whole turns, from dp/du towards dp/dv; [-0.5, 0.5] */
+    /* The direction along which alpha_u is the roughness: dp/du, turned by these. For a mix, those of the material that
+     * is picked. */
+    float grain_turn;       /* in whole turns, from dp/du towards dp/dv, on meshes with tangents of their own from these
+                               counterclockwise about the normal; [-0.5, 0.5] */
     uint32_t grain_texture; /* a colour, SCENE_NO_TEXTURE: none; 2 c - 1 of red and green is the direction to turn along
-                               dp/du and dp/dv */
+                               dp/du and dp/dv, or a mesh's own tangent and the one to its left */
 
     /* It is Lambertian and nothing else, uniform, and nothing tilts its shading normal. Set by scene_add_material. Some
      * code needs no bsdf then (README.md). */

@@ -82,7 +82,9 @@ static vec3 make_usable(vec3 v, const surface_hit *hit)
     return square > 4.0f * COSINE_MIN * COSINE_MIN ? vec3_scale(v, 1.0f / sqrtf(square)) : hit->shading_normal;
 }
 
-/* The frame whose x is the grain's, turned from that of dp/du. Mirrored uvs mirror the turn, as glTF's tangents do. */
+/* The frame whose x is the grain's, turned from that of dp/du. Mirrored uvs mirror the turn, as glTF's tangents do. A
+ * tangent that the mesh has been given is turned counterclockwise about the normal, whatever uvs and mirroring
+ * instances do: so Blender's Cycles turns its tangents. */
 static frame turn(const scene *s, const surface_hit *hit, const material *m, frame f)
 {
     vec3 dpdu, dpdv;
@@ -97,8 +99,8 @@ static frame turn(const scene *s, const surface_hit *hit, const material *m, fra
             cosine = turned;
         }
     }
-    /* by the uvs, for a mesh's own tangents may lie in any direction among these */
-    if (surface_uv_axes(s, hit, &dpdu, &dpdv) && vec3_dot(vec3_cross(dpdu, dpdv), f.z) < 0.0f)
+    if (!surface_has_own_tangents(s, hit) && surface_uv_axes(s, hit, &dpdu, &dpdv) &&
+        vec3_dot(vec3_cross(dpdu, dpdv), f.z) < 0.0f)
         sine = -sine;
     return frame_along(f.z, vec3_add(vec3_scale(f.x, cosine), vec3_scale(f.y, sine)));
 }

@@ -189,11 +189,18 @@ bool surface_uv_axes(const scene *s, const surface_hit *hit, vec3 *out_dpdu, vec
     return area > 0.0f && isfinite(area);
 }
 
+static bool has_tangents(const shape *s) { return s->kind == SHAPE_MESH && s->as.mesh.tangents; }
+
+bool surface_has_own_tangents(const scene *s, const surface_hit *hit)
+{
+    return has_tangents(&s->shapes[hit->shape_index]);
+}
+
 /* The tangents that a mesh has been given, in its own space; false where there are none. */
 static bool mesh_tangent(const shape *s, const surface_hit *hit, vec3 *out_tangent)
 {
     const mesh *m = &s->as.mesh;
-    if (s->kind != SHAPE_MESH || !m->tangents)
+    if (!has_tangents(s))
         return false;
     const corner_values p = mesh_values_at(m, m->positions, hit->primitive_index, hit->time);
     const corner_values along = mesh_values_at(m, m->tangents, hit->primitive_index, hit->time);

@@ -18,6 +18,9 @@ surface_differentials surface_differentials_at(const scene *s, const surface_hit
 /* Writes dpdu and dpdv alone. Returns false where uvs give no direction. */
 bool surface_uv_axes(const scene *s, const surface_hit *hit, vec3 *out_dpdu, vec3 *out_dpdv);
 
+/* Returns whether the hit is on a mesh that has been given tangents, beside what its uvs say. */
+bool surface_has_own_tangents(const scene *s, const surface_hit *hit);
+
 /* Writes the tangents along which u and v grow at the hit, in world space; of a mesh with tangents of its own, that
  * tangent and the one across it on v's side. Where uvs give no direction, any two tangents. Each call computes them
  * anew. */
