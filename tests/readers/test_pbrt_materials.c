@@ -449,6 +449,23 @@ static void principled_materials(void **state)
     assert_rgb(m.dielectric_f0, .5 * f0, f0, .5, 1e-6);
 }
 
+/* The bound is that of the file's numbers: in narrower primaries a colour may have a larger component. */
+static void a_sheen_in_another_colour_space(void **state)
+{
+    (void)state;
+    reading r = reading_of("WorldBegin ColorSpace \"rec2020\" Material \"principled\" \"rgb sheen\" [ 9 11.3 11.3 ]\n"
+                           "\"string sheen_model\" \"schlick\" Shape \"sphere\"");
+    const rgb sheen = r.scene->materials[r.scene->shapes[0].material_index].sheen;
+    const double most = (double)sheen_factor_max(SHEEN_SCHLICK);
+    assert_rgb(sheen, 1.660491 * 9 - 0.587641 * 11.3 - 0.072850 * 11.3, most, most, 2e-3);
+    reading_destroy(&r);
+    const char *text = "WorldBegin ColorSpace \"rec2020\" Material \"principled\" \"rgb sheen\" [ 0.5 0.5 1.1 ]";
+    r = reading_create(NULL, text, strlen(text));
+    assert_int_equal(r.status, AG_ERROR_SCENE);
+    assert_non_null(strstr(r.said[AG_LOG_ERROR], "\"sheen\" of this model should be from 0 to 1"));
+    reading_destroy(&r);
+}
+
 static void cloth_and_brushed_metal(void **state)
 {
     (void)state;
@@ -558,6 +575,7 @@ int main(void)
         cmocka_unit_test(principled_materials),
         cmocka_unit_test(principled_textures),
         cmocka_unit_test(cloth_and_brushed_metal),
+        cmocka_unit_test(a_sheen_in_another_colour_space),
         cmocka_unit_test(textures_of_cloth_and_brushed_metal),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

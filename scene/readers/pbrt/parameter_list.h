@@ -37,6 +37,7 @@ typedef struct parameter {
     file_location where; /* of the quoted "type name" */
     size_t count;        /* numbers (3 per point3), strings or bools */
     double *numbers;     /* floats, integers, points, ...; NULL for strings and bools */
+    double most_in_file; /* largest component of colours before their colour space was changed; 0: it was not */
     char **strings;      /* strings, texture names, spectrum names */
     unsigned char *bools;
     bool is_borrowed; /* numbers, strings and bools are another's, who outlives this one: not to be written to */

@@ -25,6 +25,7 @@ static ag_status convert_rgb(pbrt_parser *parser, parameter *p, size_t width)
         if (c[0] < 0.0 || c[1] < 0.0 || c[2] < 0.0)
             return pbrt_error(parser, p->where, width, "\"rgb %s\" has a negative component", p->name);
         double largest = fmax(c[0], fmax(c[1], c[2]));
+        p->most_in_file = fmax(p->most_in_file, largest);
         double bound = use == SPECTRUM_REFLECTANCE && largest <= 1.0 ? 1.0 : INFINITY;
         color_matrix_apply(&m, c, c);
         if (fmin(c[0], fmin(c[1], c[2])) < -1e-3 * largest || fmax(c[0], fmax(c[1], c[2])) > bound + 1e-3)

@@ -26,6 +26,13 @@ static ag_status read_color(pbrt_parser *parser, parameter_list *list, const cha
     return AG_OK;
 }
 
+/* The largest component of a colour as the file has it: in another colour space it may be larger. */
+static float most_of(const parameter_list *list, const char *name, rgb value)
+{
+    const parameter *p = parameter_list_find(list, name);
+    return p && p->most_in_file > 0.0 ? (float)p->most_in_file : rgb_max(value);
+}
+
 static ag_status read_sheen(pbrt_parser *parser, parameter_list *list, material *m)
 {
     static const struct {
@@ -43,12 +50,13 @@ static ag_status read_sheen(pbrt_parser *parser, parameter_list *list, material 
                            "\"sheen_model\" should be \"charlie\", \"schlick\" or \"velvet\", not \"%s\"", model);
     m->sheen_model = MODELS[k].model;
     const float most = sheen_factor_max(m->sheen_model);
-    if (!(fminf(m->sheen.r, fminf(m->sheen.g, m->sheen.b)) >= 0.0f && rgb_max(m->sheen) <= most))
+    const float least = fminf(m->sheen.r, fminf(m->sheen.g, m->sheen.b));
+    if (!(least >= 0.0f && most_of(list, "sheen", m->sheen) <= most))
         return pbrt_refuse(parser, list, "sheen", "\"sheen\" of this model should be from 0 to %.4g", (double)most);
     return AG_OK;
 }
 
-/* Of an axis that has a roughness of its own. */
+/* Reads the roughness of one axis, which then has no texture but its own. */
 static ag_status read_axis(pbrt_parser *parser, parameter_list *list, const char *name, float *value,
                            uint32_t *texture_index)
 {
