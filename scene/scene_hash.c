@@ -54,7 +54,7 @@ static void add_texture(hash128 *h, const texture *t)
     ADD(t->most);
 }
 
-/* The value textures that materials have had from the beginning. */
+/* So many value textures are hashed of every material; those after them belong to what add_principled_rest hashes. */
 enum { FIRST_VALUE_TEXTURES = 16 };
 
 /* Sheen, and roughness that has a direction. Maps of scenes without them, that were kept before there was either, stay

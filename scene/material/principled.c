@@ -46,8 +46,8 @@ static float coat_through(const principled_point *m, float cosine)
     return 1.0f - m->clearcoat * (COAT_F0 * coat.of_f0 + coat.of_f90);
 }
 
-/* Of a sheen that is there. KHR_materials_sheen: what lies below gets what the sheen leaves of the colour that it
- * reflects most. */
+/* The material has a sheen. What lies below it gets what it leaves of the colour that it reflects most, as
+ * KHR_materials_sheen has it. */
 static float sheen_through(const principled_point *m, float cosine)
 {
     return fmaxf(0.0f,

@@ -24,22 +24,25 @@ static float along_row(const uint16_t *row, int column, float rest)
     return ((1.0f - rest) * (float)row[column] + rest * (float)row[column + 1]) / SHEEN_ALBEDO_UNIT;
 }
 
+static float look_up_row(const uint16_t *row, float cosine)
+{
+    float rest;
+    const int column = find_step(sqrtf(fminf(fmaxf(cosine, 0.0f), 1.0f)), SHEEN_ALBEDO_COSINES, &rest);
+    return along_row(row, column, rest);
+}
+
 static float look_up(const uint16_t (*rows)[SHEEN_ALBEDO_COSINES], float roughness, float cosine)
 {
-    float u, v;
+    float v;
     const float level = (fibre_roughness(roughness) - SHEEN_ROUGHNESS_MIN) / (1.0f - SHEEN_ROUGHNESS_MIN);
     const int row = find_step(sqrtf(level), SHEEN_ALBEDO_ROUGHNESSES, &v);
-    const int column = find_step(sqrtf(fminf(fmaxf(cosine, 0.0f), 1.0f)), SHEEN_ALBEDO_COSINES, &u);
-    return (1.0f - v) * along_row(rows[row], column, u) + v * along_row(rows[row + 1], column, u);
+    return (1.0f - v) * look_up_row(rows[row], cosine) + v * look_up_row(rows[row + 1], cosine);
 }
 
 float sheen_albedo(sheen_model model, float roughness, float cosine)
 {
-    if (model == SHEEN_SCHLICK) {
-        float u;
-        const int column = find_step(sqrtf(fminf(fmaxf(cosine, 0.0f), 1.0f)), SHEEN_ALBEDO_COSINES, &u);
-        return along_row(SHEEN_ALBEDO_SCHLICK, column, u) * SHEEN_ALBEDO_SCHLICK_MAX;
-    }
+    if (model == SHEEN_SCHLICK)
+        return look_up_row(SHEEN_ALBEDO_SCHLICK, cosine) * SHEEN_ALBEDO_SCHLICK_MAX;
     return fminf(look_up(model == SHEEN_VELVET ? SHEEN_ALBEDO_VELVET : SHEEN_ALBEDO_CHARLIE, roughness, cosine), 1.0f);
 }
 

@@ -6,7 +6,8 @@
  * Flow: material -> principled -> [here] <- lobes_sheen. Threads: pure functions.
  *
  * Three models, since none is another's special case: Charlie's fibres reflect back to where light comes from as well
- * as on beyond it, Burley's term goes on alone, and Ashikhmin's rim is far brighter than either. */
+ * as on beyond it, Burley's term is strongest where light goes on beyond the surface, and Ashikhmin's rim is far
+ * brighter than either. */
 #ifndef AFTERGLOW_SHEEN_H
 #define AFTERGLOW_SHEEN_H
 
