@@ -127,8 +127,9 @@ def _sheen(baker, inputs, path):
     brightness = (color * materials.LUMA).sum(axis=-1, keepdims=True)
     hue = np.where(brightness > 0, color / np.maximum(brightness, 1e-30), 1.0)
     sheen = amount * (1 - metallic) * (1 - transmission) * (1 - tint + tint * hue)
-    made = baker.parameter("sheen", sheen, True, 0.0, materials.SHEEN_MOST)
-    return {**made, "string sheen_model": "schlick"}, materials.SHEEN_ALBEDO * float(np.mean(sheen.max(axis=-1)))
+    sheen = np.clip(np.nan_to_num(sheen), 0, materials.SHEEN_MOST)
+    taken = materials.SHEEN_ALBEDO * float(np.mean(sheen.max(axis=-1)))
+    return {**baker.parameter("sheen", sheen, True), "string sheen_model": "schlick"}, taken
 
 
 def _grain(baker, inputs, path, name):
@@ -379,31 +380,30 @@ _SHADERS = {
 _ANISOTROPIC = {"BSDF_PRINCIPLED": "Anisotropic", "BSDF_ANISOTROPIC": "Anisotropy"}
 
 
-def _brushed_shaders(tree):
-    for node in tree.nodes:
-        if node.type == "GROUP" and node.node_tree:
-            yield from _brushed_shaders(node.node_tree)
-        elif node.type in _ANISOTROPIC:
-            amount = node.inputs[_ANISOTROPIC[node.type]]
-            if amount.is_linked or abs(amount.default_value) > 1e-4:
-                yield node
+def _brushed_shaders(graph, socket):
+    """Those that reach a socket, with the groups that they are in."""
+    for node, path in graph.behind(socket):
+        if node.type in _ANISOTROPIC:
+            output, value, _ = source(node.inputs[_ANISOTROPIC[node.type]], path)
+            if output is not None or abs(value.default_value) > 1e-4:
+                yield node, path
 
 
-def tangent_of(material, notes):
-    """Along which direction the material's shaders are brushed: ("RADIAL", axis) about an axis of the Generated coordinates,
-    as Cycles has it unless a Tangent node says otherwise, or ("UV", name of the map); None: no shader is."""
+def tangent_of(graph, socket):
+    """Along which direction the shaders that reach a material's socket are brushed: ("RADIAL", axis) about an axis of the
+    Generated coordinates, as Cycles has it unless a Tangent node says otherwise, or ("UV", name of the map); None: no shader
+    is."""
     found = []
-    for shader in _brushed_shaders(material.node_tree):
-        output, _, _ = source(shader.inputs["Tangent"], ())
+    for shader, path in _brushed_shaders(graph, socket):
+        output, _, _ = source(shader.inputs["Tangent"], path)
         if output is None or output.node.type != "TANGENT":
             if output is not None:
-                notes.say(f'material "{material.name_full}": node "{output.node.bl_label}" is not translated: the tangent is '
-                          "radial")
+                graph.skip(output.node, "the tangent is radial")
             found.append(("RADIAL", 2))
         elif output.node.direction_type == "UV_MAP":
             found.append(("UV", output.node.uv_map))
         else:
             found.append(("RADIAL", "XYZ".index(output.node.axis)))
     if len(set(found)) > 1:
-        notes.say(f'material "{material.name_full}": its shaders are brushed along several tangents: the first counts')
+        graph.notes.say(f"{graph.name}: its shaders are brushed along several tangents: the first counts")
     return found[0] if found else None

@@ -23,7 +23,7 @@ LUMA = np.array([0.2126, 0.7152, 0.0722])
 
 # Of a sheen that goes by Schlick's approximation: the largest factor with which it reflects no more than it gets, and the
 # share that it reflects of even light with a factor of 1.
-SHEEN_MOST, SHEEN_ALBEDO = 11.3, 0.0110
+SHEEN_MOST, SHEEN_ALBEDO = 11.3, 0.0116
 
 
 class MaterialSheet(Sheet):
@@ -198,12 +198,13 @@ class Materials:
         if material is None or not material.use_nodes or not material.node_tree:
             return self.look(material)
         key = material.name_full
+        output = material.node_tree.get_output_node("CYCLES")
         if key not in self._wants_space:
-            output = material.node_tree.get_output_node("CYCLES")
             self._wants_space[key] = output is not None and Graph(key, self._notes).has_procedural(output.inputs["Surface"])
         if not self._wants_space[key]:
             return self.look(material)
-        return Look(key, material, None, IN_SPACE, tangent=closures.tangent_of(material, self._notes))
+        graph = Graph(f'material "{key}"', self._notes)
+        return Look(key, material, None, IN_SPACE, tangent=closures.tangent_of(graph, output.inputs["Surface"]))
 
     def look_in_space(self, look, part, pixels):
         """The look of one part, and the part with coordinates by its atlas, of about so many pixels."""
@@ -234,7 +235,7 @@ class Materials:
             self._scene.material(baker.name, "diffuse", {"rgb reflectance": (0, 0, 0)})
             return Look(baker.name, {}, None, None)
         baker.look_for_layout(output.inputs["Surface"])
-        return self._translate(baker, output)._replace(tangent=closures.tangent_of(material, self._notes))
+        return self._translate(baker, output)._replace(tangent=closures.tangent_of(baker.graph, output.inputs["Surface"]))
 
     def _translate(self, baker, output):
         if output.inputs["Displacement"].is_linked:

@@ -78,18 +78,18 @@ class Graph:
 
     def pictures(self, socket, path=()):
         """The image nodes behind a socket, with the groups that they are in."""
-        return [(node, inside) for node, inside in self._behind(socket, path) if node.type == "TEX_IMAGE" and node.image]
+        return [(node, inside) for node, inside in self.behind(socket, path) if node.type == "TEX_IMAGE" and node.image]
 
     def has_procedural(self, socket):
         """Whether there is what wants the places of the surface: a procedural texture that is translated."""
-        return any(node.type in procedural.NODES for node, _ in self._behind(socket, ()))
+        return any(node.type in procedural.NODES for node, _ in self.behind(socket, ()))
 
     def varies(self, socket, path):
         """Whether a socket may say something else elsewhere on the surface."""
         return any(node.type in procedural.NODES or node.type in ("TEX_IMAGE", "TEX_COORD", "UVMAP")
-                   for node, _ in self._behind(socket, path))
+                   for node, _ in self.behind(socket, path))
 
-    def _behind(self, socket, path):
+    def behind(self, socket, path=()):
         """The nodes behind a socket, with the groups that they are in; not those that place a picture."""
         found, seen, open_sockets = [], set(), [(socket, path)]
         while open_sockets:
