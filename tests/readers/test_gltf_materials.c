@@ -2,6 +2,7 @@
  * Threads: one. */
 #define _POSIX_C_SOURCE 200809L
 #include "fixtures/gltf_material.h"
+#include "material/shading_frame.h"
 
 static void defaults(void **state)
 {
@@ -99,15 +100,40 @@ static void factors(void **state)
     }
 }
 
+/* A document of one triangle of materials[0] in the mesh "sheet", with these attributes: POSITION 0, TEXCOORD_0 1, of
+ * which u runs along x and the picture's upward direction along y, TANGENT 2; is_twice: at two nodes. */
+static const char *sheet_text(const char *attributes, const char *material_json, const char *others, bool is_twice)
+{
+    static char text[4096];
+    blob b = {.size = 0};
+    BLOB_PUT(&b, (float[]){0, 0, 0, 1, 0, 0, 0, 1, 0});
+    BLOB_PUT(&b, (float[]){0, 1, 1, 1, 0, 0});
+    BLOB_PUT(&b, (float[]){0, 1, 0, 1, 0, 1, 0, 1, 0, 1, 0, 1});
+    write_blob("sheet.bin", &b);
+    snprintf(text, sizeof text,
+             "{" GLTF_ASSET "'buffers': [{'uri': 'sheet.bin', 'byteLength': 108}],"
+             "'bufferViews': [{'buffer': 0, 'byteLength': 108}],"
+             "'accessors': [{'bufferView': 0, 'componentType': 5126, 'count': 3, 'type': 'VEC3'},"
+             "  {'bufferView': 0, 'byteOffset': 36, 'componentType': 5126, 'count': 3, 'type': 'VEC2'},"
+             "  {'bufferView': 0, 'byteOffset': 60, 'componentType': 5126, 'count': 3, 'type': 'VEC4'}],"
+             "%s 'materials': [%s], 'meshes': [{'name': 'sheet', 'primitives': [{'material': 0,"
+             "'attributes': {%s}}]}], 'nodes': [{'mesh': 0}%s]}",
+             others, material_json, attributes, is_twice ? ", {'mesh': 0}" : "");
+    return text;
+}
+
+#define WITH_UVS "'POSITION': 0, 'TEXCOORD_0': 1"
+
 static void cloth_and_brushed_metal(void **state)
 {
     (void)state;
     write_triangle();
-    reading r = gltf_of(material_text("{'extensions': {'KHR_materials_sheen': {'sheenColorFactor': [1, 0.5, 0.25],"
-                                      "'sheenRoughnessFactor': 0.75}, 'KHR_materials_anisotropy': {"
-                                      "'anisotropyStrength': 0.5, 'anisotropyRotation': 1.5}},"
-                                      "'pbrMetallicRoughness': {'roughnessFactor': 0.5}}",
-                                      ""));
+    reading r = gltf_of(sheet_text(WITH_UVS,
+                                   "{'extensions': {'KHR_materials_sheen': {'sheenColorFactor': [1, 0.5, 0.25],"
+                                   "'sheenRoughnessFactor': 0.75}, 'KHR_materials_anisotropy': {"
+                                   "'anisotropyStrength': 0.5, 'anisotropyRotation': 1.5}},"
+                                   "'pbrMetallicRoughness': {'roughnessFactor': 0.5}}",
+                                   "", false));
     const material *m = only_material(&r);
     assert_rgb(m->sheen, 1, 0.5, 0.25, 1e-6);
     assert_near(m->sheen_roughness, 0.75, 0);
@@ -122,18 +148,63 @@ static void cloth_and_brushed_metal(void **state)
     assert_true(rgb_is_black(m->sheen) && m->anisotropy == 0.0f && m->alpha_u == m->alpha_v && !m->is_textured);
     reading_destroy(&r);
     write_picture("p.png");
-    r = gltf_read(material_text("{'extensions': {'KHR_materials_sheen': {'sheenColorFactor': [1, 1, 1],"
-                                "'sheenColorTexture': {'index': 0}, 'sheenRoughnessFactor': 1,"
-                                "'sheenRoughnessTexture': {'index': 0}}, 'KHR_materials_anisotropy': {"
-                                "'anisotropyStrength': 1, 'anisotropyTexture': {'index': 0}}}}",
-                                ONE_TEXTURE));
-    assert_int_equal(r.status, AG_OK);
+    r = gltf_of(sheet_text(WITH_UVS,
+                           "{'extensions': {'KHR_materials_sheen': {'sheenColorFactor': [1, 1, 1],"
+                           "'sheenColorTexture': {'index': 0}, 'sheenRoughnessFactor': 1,"
+                           "'sheenRoughnessTexture': {'index': 0}}, 'KHR_materials_anisotropy': {"
+                           "'anisotropyStrength': 1, 'anisotropyTexture': {'index': 0}}}}",
+                           ONE_TEXTURE, false));
     m = only_material(&r);
     assert_true(m->sheen_texture != SCENE_NO_TEXTURE && m->sheen_roughness_texture != SCENE_NO_TEXTURE);
     assert_true(m->anisotropy_texture != SCENE_NO_TEXTURE && m->grain_texture != SCENE_NO_TEXTURE);
     assert_int_equal(r.scene->textures[m->anisotropy_texture].channel, TEXTURE_CHANNEL_B);
     assert_int_equal(r.scene->textures[m->sheen_roughness_texture].channel, TEXTURE_CHANNEL_A);
     assert_true(r.scene->textures[m->grain_texture].is_data);
+    reading_destroy(&r);
+}
+
+/* A picture of 20 degrees turned by 30: its colours are not decoded, and up is the picture's. */
+static void the_grain_has_its_direction(void **state)
+{
+    (void)state;
+    static const char *const CHANNELS[] = {"R", "G", "B"};
+    const double turn = 3.14159265358979 / 180.0;
+    const float pixel[] = {(float)(0.5 + 0.5 * cos(20.0 * turn)), (float)(0.5 + 0.5 * sin(20.0 * turn)), 1.0f};
+    const image_description description = {.width = 1,
+                                           .height = 1,
+                                           .full_width = 1,
+                                           .full_height = 1,
+                                           .channel_count = 3,
+                                           .channel_names = CHANNELS,
+                                           .type = IMAGE_UINT16};
+    assert_int_equal(image_file_write(NULL, in_folder("p.png"), &description, pixel, message, sizeof message), AG_OK);
+    reading r = gltf_of(sheet_text(WITH_UVS,
+                                   "{'extensions': {'KHR_materials_anisotropy': {'anisotropyStrength': 1,"
+                                   "'anisotropyRotation': 0.5235987756, 'anisotropyTexture': {'index': 0}}}}",
+                                   ONE_TEXTURE, false));
+    surface_hit hit = {.position = {0.2f, 0.3f, 0.0f},
+                       .geometric_normal = {0.0f, 0.0f, 1.0f},
+                       .shading_normal = {0.0f, 0.0f, 1.0f},
+                       .uv = {0.2f, 0.3f},
+                       .instance_index = SCENE_NO_INSTANCE};
+    const frame f = shading_frame_at(r.scene, &hit, only_material(&r), true);
+    assert_vec3(f.x, cos(50.0 * turn), sin(50.0 * turn), 0, 1e-4);
+    reading_destroy(&r);
+}
+
+static void tangents_of_the_file_are_told_of(void **state)
+{
+    (void)state;
+    static const char BRUSHED[] = "{'extensions': {'KHR_materials_anisotropy': {'anisotropyStrength': 1}}}";
+    gltf_expect_warning(
+        sheet_text(WITH_UVS ", 'TANGENT': 2", BRUSHED, "", true),
+        "meshes[0].primitives[0].attributes.TANGENT: the tangents of mesh \"sheet\", and whichever else "
+        "has them, are not supported");
+    gltf_expect_warning(sheet_text("'POSITION': 0", BRUSHED, "", true),
+                        "meshes[0].primitives[0].attributes: mesh \"sheet\", and whichever else, has no uvs");
+    reading r = gltf_of(sheet_text(WITH_UVS ", 'TANGENT': 2", "{}", "", true));
+    reading_destroy(&r);
+    r = gltf_of(sheet_text("'POSITION': 0", "{}", "", true));
     reading_destroy(&r);
 }
 
@@ -332,6 +403,8 @@ int main(void)
         TEST_IN_FOLDER(defaults),
         TEST_IN_FOLDER(factors),
         TEST_IN_FOLDER(cloth_and_brushed_metal),
+        TEST_IN_FOLDER(the_grain_has_its_direction),
+        TEST_IN_FOLDER(tangents_of_the_file_are_told_of),
         TEST_IN_FOLDER(alpha_modes),
         TEST_IN_FOLDER(emission),
         TEST_IN_FOLDER(specular_glossiness),

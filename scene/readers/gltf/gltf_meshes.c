@@ -106,7 +106,28 @@ static ag_status add_shape(gltf_reader *r, const mesh *m, bool is_mirror, const 
     return scene_add_light(r->scene, &l, &light_index);
 }
 
-static ag_status add_primitive(gltf_reader *r, const gltf_value *primitive, const gltf_pose *pose, gltf_destination to)
+/* The grain of a brushed material runs along u, whatever tangents the file gives. */
+static ag_status warn_of_grain(const gltf_reader *r, const gltf_value *mesh_at, const gltf_value *attributes,
+                               const gltf_vertices *v)
+{
+    const char *name = "";
+    const gltf_value tangents = gltf_member(attributes, "TANGENT");
+    AG_TRY(gltf_get_text(r, mesh_at, "name", &name));
+    if (!v->has_uvs && !v->needs_uvs)
+        gltf_warn_once(r, attributes, "grain without uvs",
+                       "mesh \"%s\", and whichever else, has no uvs: what KHR_materials_anisotropy brushes runs along "
+                       "the first edge of each triangle",
+                       name);
+    if (tangents.json && v->has_uvs)
+        gltf_warn_once(r, &tangents, "TANGENT",
+                       "the tangents of mesh \"%s\", and whichever else has them, are not supported: what "
+                       "KHR_materials_anisotropy brushes runs along u",
+                       name);
+    return AG_OK;
+}
+
+static ag_status add_primitive(gltf_reader *r, const gltf_value *mesh_at, const gltf_value *primitive,
+                               const gltf_pose *pose, gltf_destination to)
 {
     uint32_t material_index = GLTF_NONE, *file_numbers = NULL;
     const gltf_material *material_of;
@@ -120,6 +141,8 @@ static ag_status add_primitive(gltf_reader *r, const gltf_value *primitive, cons
     AG_TRY(gltf_require(r, primitive, "attributes"));
     AG_TRY(gltf_get_object(r, primitive, "attributes", &attributes));
     ag_status status = gltf_vertices_open(r, primitive, &attributes, material_of->uv_set, pose, &v);
+    if (status == AG_OK && v.count > 0 && r->scene->materials[material_of->material_index].anisotropy > 0.0f)
+        status = warn_of_grain(r, mesh_at, &attributes, &v);
     mesh m = {.vertex_count = 0};
     if (status == AG_OK && v.count > 0)
         status = gltf_read_triangles(r, primitive, v.count, &t);
@@ -151,7 +174,7 @@ ag_status gltf_add_mesh(gltf_reader *r, uint32_t mesh_index, const gltf_pose *po
         if (run_is_cancelled(r->run))
             return AG_CANCELLED;
         AG_TRY(gltf_get_element(r, &primitives, i, &primitive));
-        AG_TRY(add_primitive(r, &primitive, pose, to));
+        AG_TRY(add_primitive(r, &at, &primitive, pose, to));
     }
     return AG_OK;
 }
