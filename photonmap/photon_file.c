@@ -46,7 +46,7 @@ static photon_map map_of(const photon_file_map *m, photon_tree tree, photon_tree
                       .is_steady = m->is_steady != 0,
                       .is_borrowed = true,
                       .has_been_cached = true};
-    photon_map_set_bias(&map, m->irradiance_bias);
+    photon_map_derive(&map, m->irradiance_bias);
     return map;
 }
 

@@ -130,16 +130,30 @@ ag_status photon_map_create(run_context *run, photon_set *set, const photon_map_
     /* The largest estimate: all k photons of the largest flux on the smallest disc; its mantissa's exponent is 63's. */
     double largest = 255.0 * ldexp(1.0, map.flux_exponent_max) * (map.nearest + 1.0) /
                      ((double)map.set.emitted_paths * (double)AG_PI * (double)map.min_radius_squared);
-    photon_map_set_bias(&map, shared_exponent_of((float)fmin(largest, 1e38)) - 63);
+    photon_map_derive(&map, shared_exponent_of((float)fmin(largest, 1e38)) - 63);
     *out_map = map;
     return AG_OK;
 }
 
-void photon_map_set_bias(photon_map *map, int irradiance_bias)
+/* An irradiance is rejected where this many photons, on average, would lie nearer to the point than its own. */
+static const double EMPTY_DISC_PHOTONS = 8.0;
+
+/* Of the largest product of irradiance and squared distance that is not rejected: what rounding cannot bring past it. */
+static const double SURELY = 0.999;
+
+static double photons_each(const photon_map *map)
+{
+    return photon_map_all_have_irradiance(map) ? 1.0
+                                               : (double)map->set.count / (double)map->irradiance_photons.count;
+}
+
+void photon_map_derive(photon_map *map, int irradiance_bias)
 {
     map->irradiance_bias = irradiance_bias;
     for (int i = 0; i < 64; i++)
         map->irradiance_unit[i] = ldexpf(1.0f, i + irradiance_bias);
+    map->surely_reaches =
+        (float)(SURELY * EMPTY_DISC_PHOTONS * photons_each(map) / ((double)AG_PI * (double)map->set.emitted_paths));
 }
 
 void photon_map_reset(photon_map *map)
@@ -312,19 +326,14 @@ void photon_map_nearest_many(const photon_map *map, photon_walk *walk, const pho
     }
 }
 
-/* An irradiance is rejected where this many photons, on average, would lie nearer to the point than its own. */
-static const float EMPTY_DISC_PHOTONS = 8.0f;
-
 bool photon_map_reaches(const photon_map *map, uint32_t irradiance_photon, float distance_squared, rgb irradiance)
 {
-    uint32_t photon_index = photon_map_index(map, irradiance_photon);
-    double photons_each = (double)map->set.count, paths = (double)map->set.emitted_paths;
-    photons_each = photon_map_all_have_irradiance(map) ? 1.0 : photons_each / (double)map->irradiance_photons.count;
-    double flux = (double)rgb_max(flux_decode(photon_block_flux(map->blocks, photon_index)));
-    double in_disc = (double)rgb_max(irradiance) * (double)AG_PI * (double)distance_squared;
-    if (in_disc * paths < 0.999 * (double)EMPTY_DISC_PHOTONS * photons_each * flux)
+    float flux = rgb_max(flux_decode(photon_block_flux(map->blocks, photon_map_index(map, irradiance_photon))));
+    float largest = rgb_max(irradiance);
+    if (largest * distance_squared < map->surely_reaches * flux)
         return true; /* mostly; without a division */
-    return in_disc <= (double)EMPTY_DISC_PHOTONS * photons_each * (flux / paths);
+    double in_disc = (double)largest * (double)AG_PI * (double)distance_squared;
+    return in_disc <= EMPTY_DISC_PHOTONS * photons_each(map) * ((double)flux / (double)map->set.emitted_paths);
 }
 
 uint32_t photon_map_leaf(const photon_map *map, vec3 position)

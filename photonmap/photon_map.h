@@ -33,6 +33,7 @@ typedef struct photon_map {
     int flux_exponent_max;     /* largest exponent of the photons' fluxes: the unit of sums */
     int irradiance_bias;       /* added to a slot's 6-bit exponent */
     float irradiance_unit[64]; /* of a slot's mantissas, by its exponent */
+    float surely_reaches; /* photon_map_reaches holds where irradiance x squared distance is below this times the flux */
     const scene *surfaces;     /* borrowed, or NULL */
     bool is_borrowed;          /* blocks and nodes are a photon_file's */
     atomic_u8 *checks; /* of a map from a file: irradiance_word_check of each irradiance photon, borrowed; else NULL */
@@ -52,8 +53,9 @@ ag_status photon_map_create(run_context *run, photon_set *set, const photon_map_
                             double progress_begin, double progress_end, photon_map *out_map);
 void photon_map_reset(photon_map *map);
 
-/* Sets the values of irradiance codes, for a map from a file. */
-void photon_map_set_bias(photon_map *map, int irradiance_bias);
+/* Sets what follows from the rest of a map with photons and from its bias, for a map from a file: the values of
+ * irradiance codes, and how far an irradiance surely reaches. */
+void photon_map_derive(photon_map *map, int irradiance_bias);
 
 /* Returns whether all photons are irradiance photons; else these have blocks and indices of their own. */
 static inline bool photon_map_all_have_irradiance(const photon_map *map)
