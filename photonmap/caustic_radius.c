@@ -31,7 +31,7 @@ ag_status caustic_radius_find(const photon_map *global, const photon_set *causti
     const float dim = found[count / DIM_ONE_IN];
     double flux = 0.0, squares = 0.0;
     for (uint32_t i = 0; i < caustic->count; i++) {
-        double stored = (double)rgb_max(flux_decode(caustic->photons[i].flux));
+        double stored = (double)flux_largest(caustic->photons[i].flux);
         flux += stored;
         squares += stored * stored;
     }
@@ -41,4 +41,10 @@ ag_status caustic_radius_find(const photon_map *global, const photon_set *causti
     if (radius > 0.0f && radius < *out_radius)
         *out_radius = radius;
     return AG_OK;
+}
+
+double caustic_least_area(const photon_map *caustic)
+{
+    const double largest = (double)AG_PI * (double)caustic->max_radius * (double)caustic->max_radius;
+    return largest / ((double)DIMMER * (double)caustic->nearest);
 }

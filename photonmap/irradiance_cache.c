@@ -349,16 +349,15 @@ static void find_irradiance_photons(const photon_map *map, const irradiance_quer
     }
 }
 
-/* Prefetches what demand and answer_by_word read, and where the answer is written. The flux comes last: where irradiance
- * photons have a tree of their own, their record has its index, which the lookup has read just before. */
+/* Prefetches what demand and answer_by_word read, and where the answer is written. */
 static void prefetch_answer(const photon_map *map, uint32_t irradiance_photon, const rgb *out_irradiance)
 {
     __builtin_prefetch(out_irradiance, 1);
     if (irradiance_photon >= PHOTON_HIDDEN)
         return;
     __builtin_prefetch(photon_map_slot(map, irradiance_photon));
-    __builtin_prefetch(&map->blocks[photon_map_index(map, irradiance_photon) / PHOTON_BLOCK_LANES]
-                            .flux[photon_map_index(map, irradiance_photon) % PHOTON_BLOCK_LANES]);
+    uint32_t index = photon_map_index(map, irradiance_photon);
+    __builtin_prefetch(&map->blocks[index / PHOTON_BLOCK_LANES].flux[index % PHOTON_BLOCK_LANES]);
 }
 
 /* Demands the irradiance of each photon in the order, and answers the queries whose photons' words are ready then or

@@ -191,9 +191,10 @@ static bool may_end(const photon_map *map, const clear_space *space, const photo
 }
 
 /* Where the surface ends within the disc: takes the photons of its part alone into the sums, and that part for the
- * area, if an estimate holds there. extent: of the whole disc; returns that of the part. */
+ * area, if an estimate holds there, or if there is a least area. extent: of the whole disc; returns that of the part.
+ */
 static irradiance_extent fit_to_surface(const photon_map *map, const clear_space *space, const photon_disc *disc,
-                                        photon_found *found, bool has_next, irradiance_extent extent,
+                                        photon_found *found, bool has_next, irradiance_extent extent, double least_area,
                                         uint64_t *in_out_rays, photon_disc_sums *in_out_sums, double *in_out_area)
 {
     surface_region region;
@@ -203,10 +204,13 @@ static irradiance_extent fit_to_surface(const photon_map *map, const clear_space
     double area = surface_region_area(&region, disc->radius);
     photon_disc_sums inside;
     bool is_k = disc_kernels_best()->sum_in_region(disc, &region, found, &inside) == map->nearest && has_next;
-    if (!is_k && !region_holds(map, area, disc->radius))
+    bool holds = is_k || region_holds(map, area, disc->radius);
+    if (holds || least_area > 0.0) {
+        *in_out_sums = inside;
+        *in_out_area = holds ? area : fmax(area, least_area);
+    }
+    if (!holds)
         return IRRADIANCE_HOLDS_NOWHERE;
-    *in_out_sums = inside;
-    *in_out_area = area;
     /* farther points must see the photon anyway */
     return region.nearest_end < photon_map_far(map) ? IRRADIANCE_HOLDS_IN_SIGHT : extent;
 }
@@ -219,15 +223,11 @@ static const clear_space *find_space(const photon_map *map, vec3 position, const
     return clear_spaces_get(map->spaces, is_known ? hint->leaf : photon_tree_leaf(&map->tree, position), spare);
 }
 
-irradiance_extent irradiance_estimate_find(const photon_map *map, vec3 position, vec3 normal, photon_neighbor *scratch,
-                                           uint64_t *in_out_rays, rgb *out_irradiance)
-{
-    return irradiance_estimate_find_reach(map, position, normal, scratch, NULL, in_out_rays, out_irradiance, NULL);
-}
-
-irradiance_extent irradiance_estimate_find_reach(const photon_map *map, vec3 position, vec3 normal,
-                                                 photon_neighbor *scratch, photon_search_hint *in_out_hint,
-                                                 uint64_t *in_out_rays, rgb *out_irradiance, float *out_reach_squared)
+/* irradiance_estimate_find_reach. least_area: of the surface that the photons of a disc are taken to lie on, where it
+ * is too small to hold an estimate; 0: the whole disc then answers. */
+static irradiance_extent find(const photon_map *map, vec3 position, vec3 normal, double least_area,
+                              photon_neighbor *scratch, photon_search_hint *in_out_hint, uint64_t *in_out_rays,
+                              rgb *out_irradiance, float *out_reach_squared)
 {
     *out_irradiance = rgb_gray(0.0f);
     if (map->set.count == 0)
@@ -267,13 +267,36 @@ irradiance_extent irradiance_estimate_find_reach(const photon_map *map, vec3 pos
     /* of its area what is surface */
     double area = (double)AG_PI * (double)radius_squared;
     irradiance_extent extent = has_levels ? IRRADIANCE_HOLDS_IN_SIGHT : IRRADIANCE_HOLDS_EVERYWHERE;
-    if (has_next && (float)found.count < LEVEL_SHARE_MIN * (float)count)
+    bool is_of_others = has_next && (float)found.count < LEVEL_SHARE_MIN * (float)count;
+    if ((least_area > 0.0 || !is_of_others) && disc.has_offsets &&
+        (has_levels || may_end(map, space, &disc, &found, radius_squared, &sums, in_out_rays)))
+        extent = fit_to_surface(map, space, &disc, &found, has_next, extent, least_area, in_out_rays, &sums, &area);
+    if (is_of_others)
         extent = IRRADIANCE_HOLDS_NOWHERE;
-    else if (disc.has_offsets && (has_levels || may_end(map, space, &disc, &found, radius_squared, &sums, in_out_rays)))
-        extent = fit_to_surface(map, space, &disc, &found, has_next, extent, in_out_rays, &sums, &area);
 
     double scale = ldexp(1.0, map->flux_exponent_max - 32) / ((double)map->set.emitted_paths * area);
     *out_irradiance = (rgb){(float)((double)sums.flux[0] * scale), (float)((double)sums.flux[1] * scale),
                             (float)((double)sums.flux[2] * scale)};
     return extent;
+}
+
+irradiance_extent irradiance_estimate_find_reach(const photon_map *map, vec3 position, vec3 normal,
+                                                 photon_neighbor *scratch, photon_search_hint *in_out_hint,
+                                                 uint64_t *in_out_rays, rgb *out_irradiance, float *out_reach_squared)
+{
+    return find(map, position, normal, 0.0, scratch, in_out_hint, in_out_rays, out_irradiance, out_reach_squared);
+}
+
+irradiance_extent irradiance_estimate_find(const photon_map *map, vec3 position, vec3 normal, photon_neighbor *scratch,
+                                           uint64_t *in_out_rays, rgb *out_irradiance)
+{
+    return find(map, position, normal, 0.0, scratch, NULL, in_out_rays, out_irradiance, NULL);
+}
+
+rgb irradiance_estimate_seen(const photon_map *map, vec3 position, vec3 normal, double least_area,
+                             photon_neighbor *scratch, uint64_t *in_out_rays)
+{
+    rgb irradiance;
+    (void)find(map, position, normal, least_area, scratch, NULL, in_out_rays, &irradiance, NULL);
+    return irradiance;
 }

@@ -41,6 +41,12 @@ irradiance_extent irradiance_estimate_find_reach(const photon_map *map, vec3 pos
                                                  photon_neighbor *scratch, photon_search_hint *in_out_hint,
                                                  uint64_t *in_out_rays, rgb *out_irradiance, float *out_reach_squared);
 
+/* Returns the irradiance where it is seen directly, so that another estimate cannot take its place: on a surface too
+ * small to hold one, the flux of its own photons over its area, m^2, or over least_area (> 0) where that is larger. The
+ * mean is then right but for surfaces smaller than that, and no photon is brighter than on that area. */
+rgb irradiance_estimate_seen(const photon_map *map, vec3 position, vec3 normal, double least_area,
+                             photon_neighbor *scratch, uint64_t *in_out_rays);
+
 /* All rays of an estimate end within 1.2 times its radius; the rest is for rounding. */
 #define IRRADIANCE_REACH_OF_RAYS 1.5f
 

@@ -84,6 +84,13 @@ static inline rgb flux_decode(uint32_t code)
     return (rgb){(float)(code >> 16 & 255) * scale, (float)(code >> 8 & 255) * scale, (float)(code & 255) * scale};
 }
 
+/* Returns rgb_max(flux_decode(code)). */
+static inline float flux_largest(uint32_t code)
+{
+    uint32_t r = code >> 16 & 255, g = code >> 8 & 255, b = code & 255, of_two = r > g ? r : g;
+    return (float)(of_two > b ? of_two : b) * power_of_two(flux_exponent(code));
+}
+
 /* --- directions: octahedral, 8 + 8 bits; within 1 degree --- */
 
 /* Coordinates are in [-1, 1]. */

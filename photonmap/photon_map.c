@@ -138,13 +138,13 @@ ag_status photon_map_create(run_context *run, photon_set *set, const photon_map_
 /* An irradiance is rejected where this many photons, on average, would lie nearer to the point than its own. */
 static const double EMPTY_DISC_PHOTONS = 8.0;
 
-/* Of the largest product of irradiance and squared distance that is not rejected: what rounding cannot bring past it. */
+/* Of the largest product of irradiance and squared distance that is not rejected: what rounding cannot bring past it.
+ */
 static const double SURELY = 0.999;
 
 static double photons_each(const photon_map *map)
 {
-    return photon_map_all_have_irradiance(map) ? 1.0
-                                               : (double)map->set.count / (double)map->irradiance_photons.count;
+    return photon_map_all_have_irradiance(map) ? 1.0 : (double)map->set.count / (double)map->irradiance_photons.count;
 }
 
 void photon_map_derive(photon_map *map, int irradiance_bias)
@@ -328,7 +328,7 @@ void photon_map_nearest_many(const photon_map *map, photon_walk *walk, const pho
 
 bool photon_map_reaches(const photon_map *map, uint32_t irradiance_photon, float distance_squared, rgb irradiance)
 {
-    float flux = rgb_max(flux_decode(photon_block_flux(map->blocks, photon_map_index(map, irradiance_photon))));
+    float flux = flux_largest(photon_block_flux(map->blocks, photon_map_index(map, irradiance_photon)));
     float largest = rgb_max(irradiance);
     if (largest * distance_squared < map->surely_reaches * flux)
         return true; /* mostly; without a division */

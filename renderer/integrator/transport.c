@@ -1,6 +1,7 @@
 /* transport.c: see transport.h. */
 #include "integrator/transport.h"
 
+#include "caustic_radius.h"
 #include "rays/transmittance.h"
 
 enum { LIGHT_SAMPLES_PER_SCATTER_SAMPLE = 4 };
@@ -121,15 +122,14 @@ rgb transport_caustics(const transport *t, eye_worker *worker, const vertex *v)
     photon_neighbor *neighbors =
         arena_alloc(worker->scratch, photon_map_scratch_count(t->caustic) * sizeof(photon_neighbor));
     rgb reflected = bsdf_gathered_reflection(&v->scattering), transmitted = bsdf_gathered_transmission(&v->scattering);
-    rgb irradiance;
+    const double least_area = caustic_least_area(t->caustic);
     worker->estimates_caustic += rgb_is_black(transmitted) ? 1 : 2;
-    irradiance_estimate_find(t->caustic, at.position, at.facing_normal, neighbors, &worker->rays_estimate, &irradiance);
-    rgb sum = rgb_mul(reflected, irradiance);
-    if (!rgb_is_black(transmitted)) {
-        irradiance_estimate_find(t->caustic, at.position, vec3_negate(at.facing_normal), neighbors,
-                                 &worker->rays_estimate, &irradiance);
-        sum = rgb_add(sum, rgb_mul(transmitted, irradiance));
-    }
+    rgb sum = rgb_mul(reflected, irradiance_estimate_seen(t->caustic, at.position, at.facing_normal, least_area,
+                                                          neighbors, &worker->rays_estimate));
+    if (!rgb_is_black(transmitted))
+        sum = rgb_add(
+            sum, rgb_mul(transmitted, irradiance_estimate_seen(t->caustic, at.position, vec3_negate(at.facing_normal),
+                                                               least_area, neighbors, &worker->rays_estimate)));
     arena_restore(worker->scratch, mark);
     return rgb_scale(sum, AG_INV_PI);
 }

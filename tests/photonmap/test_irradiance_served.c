@@ -307,6 +307,89 @@ static void points_receive_what_is_there(void **state)
     test_run_reset(&r);
 }
 
+/* The mean over the case's surfaces of what is seen there, over the truth; *out_whole_disc: where the whole disc
+ * answers for surfaces that are too small; *out_largest: the largest, over the largest irradiance. */
+static double see(test_run *r, const scene *s, const served_case *c, double photons_a_disc, double least_share,
+                  uint64_t seed, double *out_whole_disc, double *out_largest)
+{
+    enum { POINTS = 20000, NEAREST = 50 };
+    photon_set set = draw_photons(s, c, photons_a_disc, 2 * seed);
+    photon_map map;
+    photon_map_settings settings = {
+        .nearest = NEAREST, .max_radius = c->radius, .surface_area = s->surface_area, .surfaces = s};
+    assert_int_equal(photon_map_create(&r->run, &set, &settings, 0.0, 1.0, &map), AG_OK);
+    photon_neighbor *scratch = malloc(photon_map_scratch_count(&map) * sizeof *scratch);
+    assert_non_null(scratch);
+    point_series p = {.s = s, .c = c, .random = test_random(2 * seed + 1)};
+    const double least_area = least_share * PI * (double)c->radius * (double)c->radius;
+    double seen = 0.0, whole_disc = 0.0, truth = 0.0, largest = 0.0;
+    uint64_t rays = 0;
+    for (int points = 0; points < POINTS;) {
+        field_point at;
+        draw_line(&p);
+        while (cross(&p, &at)) {
+            double one = (double)irradiance_estimate_seen(&map, at.position, at.normal, least_area, scratch, &rays).g;
+            seen += one;
+            whole_disc += (double)irradiance_estimate(&map, at.position, at.normal, scratch).g;
+            truth += (double)at.irradiance;
+            largest = fmax(largest, one);
+            points++;
+        }
+    }
+    free(scratch);
+    photon_map_reset(&map);
+    *out_whole_disc = whole_disc / truth;
+    *out_largest = largest / (double)largest_irradiance(c);
+    return seen / truth;
+}
+
+/* Boards, small balls and leaves have their light where estimates are seen directly, within 3 %, with few photons a
+ * disc and with many, and no estimate is brighter than so many photons on the least area. */
+static void small_surfaces_are_seen(void **state)
+{
+    (void)state;
+    enum { FIELDS = 6 };
+    static const double LEAST_SHARE_SEEN = 0.01, PHOTONS_A_DISC[] = {3.0, 30.0, 300.0};
+    static const char *const NAMES[] = {"boards of 20 x 10 mm on a wall", "spheres", "leaves"};
+    test_run r;
+    test_run_init(&r, 1);
+    int wrong = 0, cases = 0;
+    for (size_t i = 0; i < sizeof CASES / sizeof *CASES; i++)
+        for (size_t n = 0; n < sizeof NAMES / sizeof *NAMES; n++) {
+            if (strcmp(CASES[i].name, NAMES[n]) != 0)
+                continue;
+            cases++;
+            scene *s = test_scene_create(&r, CASES[i].world);
+            for (size_t d = 0; d < (FEWER > 1 ? 1 : sizeof PHOTONS_A_DISC / sizeof *PHOTONS_A_DISC); d++) {
+                double sum = 0.0, squares = 0.0, whole_disc = 0.0, largest = 0.0;
+                for (int f = 0; f < FIELDS; f++) {
+                    double whole, most;
+                    double one =
+                        see(&r, s, &CASES[i], PHOTONS_A_DISC[d], LEAST_SHARE_SEEN, (uint64_t)(f + 1), &whole, &most);
+                    sum += one;
+                    squares += one * one;
+                    whole_disc += whole;
+                    largest = fmax(largest, most);
+                }
+                double mean = sum / FIELDS;
+                double sigma = sqrt(fmax(0.0, squares / FIELDS - mean * mean) / (FIELDS - 1));
+                double least = LEAST_SHARE_SEEN * fmin(PHOTONS_A_DISC[d], 50.0);
+                double bound = (1.0 + poisson_bound(least, 1e3 * 20000.0 * FIELDS)) / least;
+                bool is_right = fabs(mean - 1.0) <= 0.03 + 3.0 * sigma && largest <= bound;
+                print_message(
+                    "%s %s seen, %g photons a disc: mean %.4f +- %.4f, by the whole disc %.4f, largest %.3g of "
+                    "at most %.3g\n",
+                    is_right ? "right:" : "WRONG:", CASES[i].name, PHOTONS_A_DISC[d], mean, sigma, whole_disc / FIELDS,
+                    largest, bound);
+                wrong += !is_right;
+            }
+            scene_destroy(s);
+        }
+    assert_int_equal(cases, sizeof NAMES / sizeof *NAMES);
+    assert_int_equal(wrong, 0);
+    test_run_reset(&r);
+}
+
 /* A patch of light on a floor with a hundredth of it, metres of which lie within the largest radius. The k nearest
  * photons to a point in the dark are the patch's as soon as its edge is nearer than k photons of the dark, and the
  * photon nearest to it is one at that edge: by both together the floor has a third too much light, or more. */
@@ -387,8 +470,8 @@ static void light_stays_behind_a_door(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(points_receive_what_is_there),
-                                       cmocka_unit_test(light_stays_in_its_patch),
-                                       cmocka_unit_test(light_stays_behind_a_door)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(points_receive_what_is_there), cmocka_unit_test(small_surfaces_are_seen),
+        cmocka_unit_test(light_stays_in_its_patch), cmocka_unit_test(light_stays_behind_a_door)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
