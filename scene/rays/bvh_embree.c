@@ -10,6 +10,7 @@
 #include "rays/geometry_embree.h"
 #include "shape/alpha.h"
 #include "shape/mesh_motion.h"
+#include "status.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -36,6 +37,7 @@ struct bvh_device {
     /* The first RTCError since trees began to be made. Embree keeps an error for the thread that met it, which may be
      * any that joins, so asking it from one thread does not do. Read when all have ended; relaxed. */
     atomic_int error;
+    bool lacked_memory; /* in any build */
 };
 
 char embree_threads;
@@ -72,7 +74,23 @@ static void take_error(void *user, enum RTCError code, const char *text)
         log_message(d->log, AG_LOG_ERROR, "Embree: %s", text ? text : "unknown error");
 }
 
+/* AG_OK, or what the first error since trees began to be made means. */
+static ag_status build_status(const struct bvh_device *d)
+{
+    const int error = atomic_load_explicit(&d->error, memory_order_relaxed);
+    if (error == RTC_ERROR_NONE)
+        return AG_OK;
+    return error == RTC_ERROR_OUT_OF_MEMORY ? AG_ERROR_MEMORY : AG_ERROR_RAY_TRACING;
+}
+
 /* --- build --- */
+
+static ag_status attach_shape(const bvh *b, bvh_tree *t, uint32_t index)
+{
+    const bool is_attached = embree_attach_shape(b->device->embree, t->scene, &t->attached[index], index);
+    AG_TRY(build_status(b->device));
+    return is_attached ? AG_OK : AG_ERROR_RAY_TRACING;
+}
 
 /* Instances are numbered behind the shapes. */
 static void attach_instance(const bvh *b, const scene *s, uint32_t instance_index)
@@ -227,11 +245,11 @@ static ag_status make_objects(bvh *b, const scene *s, run_context *run, unsigned
         uint64_t item_count = 0;
         for (uint32_t k = 0; k < o->shape_count && !kept; k++) {
             item_count += embree_item_count(t->attached[k].shape);
-            if (!embree_attach_shape(b->device->embree, t->scene, &t->attached[k], k))
-                return AG_ERROR_RAY_TRACING;
+            AG_TRY(attach_shape(b, t, k));
         }
         if (!kept)
             build(t->scene, item_count, run, joiners);
+        AG_TRY(build_status(b->device)); /* nothing is built over a broken tree */
         reuse->trees_built += !kept;
     }
     return AG_OK;
@@ -272,14 +290,14 @@ static ag_status make_world(bvh *b, const scene *s, run_context *run, unsigned j
     reuse->trees_built++;
     rtcSetSceneProgressMonitorFunction(b->scene, report_progress, run);
     for (uint32_t i = 0; i < s->shape_count; i++)
-        if (s->shapes[i].object_index == SCENE_NO_OBJECT &&
-            !embree_attach_shape(b->device->embree, b->scene, &b->world->attached[i], i))
-            return AG_ERROR_RAY_TRACING;
+        if (s->shapes[i].object_index == SCENE_NO_OBJECT)
+            AG_TRY(attach_shape(b, b->world, i));
     for (uint32_t i = 0; i < s->instance_count; i++)
         attach_instance(b, s, i);
+    AG_TRY(build_status(b->device));
     build(b->scene, UINT64_MAX, run, joiners);
     rtcSetSceneProgressMonitorFunction(b->scene, NULL, NULL);
-    return run_is_cancelled(run) ? AG_CANCELLED : AG_OK;
+    return run_is_cancelled(run) ? AG_CANCELLED : build_status(b->device);
 }
 
 /* --- device --- */
@@ -287,6 +305,10 @@ static ag_status make_world(bvh *b, const scene *s, run_context *run, unsigned j
 static void release_device(struct bvh_device *d)
 {
     if (!d || --d->holder_count > 0)
+        return;
+    /* Where memory ended in a build, Embree 3.13 at times waits in rtcReleaseDevice for ever: the device is left, and
+     * with it what its memory monitor points at. */
+    if (d->lacked_memory)
         return;
     rtcReleaseDevice(d->embree);
     free(d);
@@ -316,16 +338,14 @@ static ag_status create_device(run_context *run, const char *isa, unsigned joine
     return AG_OK;
 }
 
-/* Builds objects, then the world, and returns Embree's error, if any. */
+/* Builds objects, then the world. */
 static ag_status make_trees(bvh *b, const scene *s, run_context *run, unsigned joiners, scene_reuse *reuse)
 {
     ag_status status = make_objects(b, s, run, joiners, reuse);
     if (status == AG_OK)
         status = make_world(b, s, run, joiners, reuse);
     (void)rtcGetDeviceError(b->device->embree); /* this thread's is kept until it is read */
-    const int error = atomic_load_explicit(&b->device->error, memory_order_relaxed);
-    if (status == AG_OK && error != RTC_ERROR_NONE)
-        status = error == RTC_ERROR_OUT_OF_MEMORY ? AG_ERROR_MEMORY : AG_ERROR_RAY_TRACING;
+    b->device->lacked_memory |= build_status(b->device) == AG_ERROR_MEMORY;
     return status;
 }
 
