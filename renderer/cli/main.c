@@ -16,6 +16,7 @@
 #include "status.h"
 #include "summary.h"
 
+#include <math.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -79,15 +80,13 @@ static ag_status list_displays(ag_context *context)
     return fputs(text, stdout) < 0 || fflush(stdout) != 0 ? AG_ERROR_OUTPUT : AG_OK;
 }
 
-/* Whether all that is to be written is there, and complete; says so. */
+/* Whether the picture is not rendered, since all its files are there; says so. */
 static bool is_there(const options *o)
 {
-    for (int i = 0; i < o->outfile_count; i++)
-        if (!picture_mark_is_complete(o->outfiles[i]))
-            return false;
-    if (o->outfile_count > 0 && o->verbosity >= 0)
+    const bool is_skipped = o->no_clobber && picture_mark_all_are_complete(o->outfiles, o->outfile_count);
+    if (is_skipped && o->verbosity >= 0)
         fprintf(stderr, "afterglow: skipped: '%s' is there\n", o->outfiles[0]);
-    return o->outfile_count > 0;
+    return is_skipped;
 }
 
 /* The bytes that it takes to show the picture to who watches in a browser, for whom the film is there once more, or in
@@ -173,7 +172,7 @@ static ag_status choose_output(picture_run *r, const ag_scene *scene)
     const ag_status status = ag_output_check(r->context, &o->output, r->default_name);
     if (status != AG_OK) /* the name is the scene's, not the command line's */
         return status == AG_ERROR_ARGUMENT ? AG_ERROR_SCENE : status;
-    r->is_skipped = o->no_clobber && is_there(o);
+    r->is_skipped = is_there(o);
     return !r->is_skipped && file_conflicts_of_options(o) ? AG_ERROR_ARGUMENT : AG_OK;
 }
 
@@ -241,12 +240,11 @@ static ag_status load_scene(ag_context *context, const options *o, const ag_scen
 /* Renders a picture; frame: -1 where there are no frames. */
 static ag_status run(ag_context *context, options *o, int frame, passes_result *out_result)
 {
-    o->begun = passes_seconds();
-    if (o->no_clobber && is_there(o))
+    if (is_there(o))
         return AG_OK;
     AG_TRY(check_options(context, o));
-    if (o->time_limit > 0.0 && !o->dry_run)
-        signals_set_deadline(o->time_limit);
+    o->deadline = o->time_limit > 0.0 && !o->dry_run ? passes_seconds() + o->time_limit : INFINITY;
+    signals_set_deadline(o->deadline);
     picture_run r = {.context = context, .o = o, .frame = frame};
     ag_scene *scene = NULL;
     ag_scene_settings asked = o->asked;

@@ -61,7 +61,9 @@ typedef struct options {
     frame_list frames;                   /* none: one picture, whose names are as they stand */
     const struct options *of_all_frames; /* of one frame's options those that they were made of, borrowed; else NULL */
     int tile_index, tile_count;          /* from 1 on; 0: the whole */
-    double time_limit, begun;            /* s, 0: none; from when it counts, see passes_seconds */
+    double time_limit;                   /* s, 0: none */
+    double deadline;                     /* main's, of each picture: when it is reached, in seconds of passes_seconds();
+                                            INFINITY: never */
     progress_style progress;
     picture_form picture_form;
     int verbosity; /* -1 quiet, 0, 1 verbose, 2 debug */

@@ -31,7 +31,6 @@ typedef struct passes {
     double checkpoint_interval; /* seconds; INFINITY: at signals alone */
     double next_checkpoint;     /* when, in seconds of passes_seconds() */
     double mean_at_checkpoint;  /* samples per pixel there were at the last one */
-    double deadline;            /* in seconds of passes_seconds() */
     double begun;               /* when rendering began, in seconds of passes_seconds() */
     int final;                  /* samples per pixel in the end */
     bool is_view;               /* what is written is another view of a picture that was complete before */
@@ -123,7 +122,7 @@ static int next_pass(const passes *p, int samples, double seconds_per_sample)
         const double seconds = fmax(WATCHED_SECONDS, WATCHED_SHARE * (passes_seconds() - p->begun));
         next = (int)fmin(next, samples + fmax(1.0, seconds / seconds_per_sample));
     }
-    double affordable = PLANNED_SHARE * (p->deadline - passes_seconds()) / fmax(seconds_per_sample, 1e-9);
+    double affordable = PLANNED_SHARE * (p->o->deadline - passes_seconds()) / fmax(seconds_per_sample, 1e-9);
     if (affordable >= next - samples)
         return next;
     return affordable >= 1.0 ? samples + (int)affordable : 0;
@@ -147,7 +146,7 @@ static ag_status show_page(const passes *p, page_mode mode)
 /* Goes for a walk where that is wished for; back from it the picture is shown again, or p->kept is there. */
 static ag_status walk_about(passes *p, page_mode mode)
 {
-    const walk w = {p->context, p->o, p->rendering, p->final, p->deadline};
+    const walk w = {p->context, p->o, p->rendering, p->final};
     if (!p->o->page || !page_wishes_has_move(page_server_wishes(p->o->page)))
         return AG_OK;
     AG_TRY(walk_run(&w, &p->kept));
@@ -358,7 +357,7 @@ static bool is_last_frame(const options *o)
 static bool is_looked_at(const passes *p)
 {
     const options *o = p->o;
-    if (!o->page || !is_last_frame(o) || p->kept || signals_stop() || passes_seconds() >= p->deadline)
+    if (!o->page || !is_last_frame(o) || p->kept || signals_stop() || passes_seconds() >= o->deadline)
         return false;
     page_wishes *wishes = page_server_wishes(o->page);
     return page_wishes_is_watched(wishes, PAGE_PATIENCE_SECONDS) && !page_wishes_has_end(wishes);
@@ -382,7 +381,7 @@ static ag_status await_page(passes *p)
 static void leave_watchers(const passes *p)
 {
     page_server_leave(p->o->page, is_last_frame(p->o) ? PAGE_FINISHED : PAGE_WAITING);
-    display_server_leave(p->o->display, fmax(p->deadline - passes_seconds(), 0.0));
+    display_server_leave(p->o->display, fmax(p->o->deadline - passes_seconds(), 0.0));
 }
 
 /* From now on the film is shown wherever it is wanted. */
@@ -453,9 +452,7 @@ static ag_status write_and_wait(passes *p, const ag_render_settings *settings, p
 ag_status passes_render(ag_context *context, const options *o, const ag_scene *scene,
                         const ag_render_settings *settings, passes_result *out_result)
 {
-    passes p = {.context = context, .o = o, .final = settings->samples_per_pixel, .deadline = INFINITY};
-    if (o->time_limit > 0.0)
-        p.deadline = o->begun + o->time_limit;
+    passes p = {.context = context, .o = o, .final = settings->samples_per_pixel};
     ag_film *films[2] = {NULL, NULL};
     ag_noise noise = {.level = -1.0};
     ag_status failed = AG_OK;

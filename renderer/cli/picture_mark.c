@@ -97,3 +97,11 @@ bool picture_mark_is_complete(const char *outfile)
     free(mark);
     return !is_marked && stat(outfile, &info) == 0 && S_ISREG(info.st_mode) && info.st_size > 0;
 }
+
+bool picture_mark_all_are_complete(const char **outfiles, int count)
+{
+    for (int i = 0; i < count; i++)
+        if (!picture_mark_is_complete(outfiles[i]))
+            return false;
+    return count > 0;
+}

@@ -9,6 +9,8 @@
 
 /* Whether a picture is there, and complete: what was written on the way has a file beside it that says so. */
 bool picture_mark_is_complete(const char *outfile);
+/* Whether there are outfiles, and all of them are. */
+bool picture_mark_all_are_complete(const char **outfiles, int count);
 
 /* The names of the files beside an outfile: the checkpoint, beside the first one, and the mark of a picture that is not
  * complete. To be freed, NULL when out of memory. */

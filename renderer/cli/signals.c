@@ -18,9 +18,10 @@
 static ag_context *signalled_context;
 static volatile sig_atomic_t stop_signal, wants_snapshot, is_rendering;
 
-/* There is one timer, for what comes first. */
-static double deadline = INFINITY; /* in seconds of passes_seconds() */
-static volatile sig_atomic_t timer_is_deadline, is_time_up;
+/* There is one timer, for what comes first. Its handler may run on any thread, at any time later: what it finds is told
+ * by the clock alone. */
+static _Atomic(double) deadline = INFINITY; /* in seconds of passes_seconds() */
+static atomic_bool is_time_up;
 
 static volatile sig_atomic_t resets_terminal, ends_sixels;
 /* Of the thread that draws and of the handler of SIGTSTP, which may run on any thread. */
@@ -170,13 +171,16 @@ static void on_snapshot(int number)
 
 static void on_timer(int number)
 {
+    const int error = errno;
+    const bool is_late = passes_seconds() >= atomic_load(&deadline);
     (void)number;
-    if (timer_is_deadline)
-        is_time_up = 1;
-    if (timer_is_deadline && !is_rendering)
+    if (is_late)
+        atomic_store(&is_time_up, true);
+    if (is_late && !is_rendering)
         ag_context_cancel(signalled_context);
     else
         ag_context_pause(signalled_context);
+    errno = error;
 }
 
 static void block(int how)
@@ -211,7 +215,7 @@ void signals_catch_abort(void)
 
 void signals_catch(ag_context *context)
 {
-    is_time_up = 0; /* for the picture before */
+    atomic_store(&is_time_up, false); /* for the picture before */
     signalled_context = context;
     for (size_t i = 0; i < sizeof STOPPING / sizeof *STOPPING; i++) {
         struct sigaction before, action = {.sa_handler = on_stop, .sa_flags = SA_RESTART};
@@ -254,22 +258,20 @@ bool signals_take_snapshot(void)
 void signals_set_timer(double seconds)
 {
     struct itimerval timer = {0};
-    const double left = is_time_up ? INFINITY : deadline - passes_seconds();
-    setitimer(ITIMER_REAL, &timer, NULL); /* it does not end while it is changed */
-    timer_is_deadline = left <= seconds && isfinite(left);
-    seconds = fmin(seconds, left);
+    if (!atomic_load(&is_time_up))
+        seconds = fmin(seconds, atomic_load(&deadline) - passes_seconds());
     if (isfinite(seconds) && seconds < 1e9) {
-        double at_least = fmax(seconds, 1e-3);
+        double at_least = fmax(seconds + 2e-6, 1e-3); /* rounded down, it would end before the deadline */
         timer.it_value.tv_sec = (time_t)at_least;
         timer.it_value.tv_usec = (suseconds_t)((at_least - floor(at_least)) * 1e6);
     }
     setitimer(ITIMER_REAL, &timer, NULL);
 }
 
-void signals_set_deadline(double seconds)
+void signals_set_deadline(double at)
 {
-    deadline = passes_seconds() + seconds;
+    atomic_store(&deadline, at);
     signals_set_timer(INFINITY);
 }
 
-bool signals_is_time_up(void) { return is_time_up; }
+bool signals_is_time_up(void) { return atomic_load(&is_time_up); }

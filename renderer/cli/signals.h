@@ -43,9 +43,9 @@ bool signals_take_snapshot(void);
 /* Pauses the rendering after so many seconds (at least a millisecond); INFINITY: never. */
 void signals_set_timer(double seconds);
 
-/* In so many seconds the time is up: rendering pauses then, all else is cancelled, as by a signal to stop. INFINITY:
- * never. signals_catch forgets that it was up. */
-void signals_set_deadline(double seconds);
+/* The time is up at this moment, in seconds of passes_seconds(): rendering pauses then, all else is cancelled, as by a
+ * signal to stop. INFINITY: never. signals_catch forgets that it was up. */
+void signals_set_deadline(double at);
 bool signals_is_time_up(void);
 
 #endif

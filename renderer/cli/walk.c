@@ -97,7 +97,7 @@ static ag_status refine(const walk *w, walk_state *s)
 /* Whether a walk is over without anything to keep. */
 static bool is_over(const walk *w, page_wishes *wishes)
 {
-    return signals_stop() || page_wishes_take_return(wishes) || passes_seconds() >= w->deadline ||
+    return signals_stop() || page_wishes_take_return(wishes) || passes_seconds() >= w->o->deadline ||
            !page_wishes_is_watched(wishes, PAGE_PATIENCE_SECONDS);
 }
 

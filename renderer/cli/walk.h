@@ -12,7 +12,6 @@ typedef struct walk {
     const options *o;     /* with a page */
     ag_rendering *beside; /* the picture */
     int samples_most;     /* of a pixel */
-    double deadline;      /* as passes_seconds tells it */
 } walk;
 
 /* Notes what there is of a rendering, for the page. */

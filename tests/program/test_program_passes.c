@@ -9,12 +9,24 @@
 #define BOX   PROGRAM_SCENES "box_with_blocks.pbrt"
 #define SMALL "--integrator=path", "--size=24x24", "--type=float"
 
+/* A run that ends by its limit, with samples: limits grow until one leaves time for them. */
+static program_run run_within_limit(const char *other)
+{
+    program_run run = {.exit_code = 3};
+    for (double limit = 0.25; run.exit_code == 3 && limit < 300.0; limit *= 2.0) {
+        char option[64];
+        snprintf(option, sizeof option, "--time-limit=%g", limit);
+        program_run_reset(&run);
+        run = RUN(SMALL, "--spp=65536", "--max-depth=2", option, other, "-o", "a.exr", BOX);
+    }
+    return run;
+}
+
 /* All pixels have the same number of samples: they are the picture of so many. */
 static void test_time_limit(void **state)
 {
     (void)state;
-    program_run run =
-        RUN(SMALL, "--spp=65536", "--max-depth=2", "--time-limit=0.5", "--checkpoint=100", "-o", "a.exr", BOX);
+    program_run run = run_within_limit("--checkpoint=1000");
     expect_exit(&run, 0);
     int samples = 0;
     const char *said = strstr(run.err, "time limit: the picture has ");
@@ -23,7 +35,7 @@ static void test_time_limit(void **state)
     program_run_reset(&run);
     assert_true(samples >= 1);
     expect_listing("a.exr a.exr.afterglow-checkpoint");
-    run = RUN(SMALL, "--spp=65536", "--max-depth=2", "--time-limit=0.5", "--resume", "-o", "a.exr", BOX);
+    run = run_within_limit("--resume");
     expect_exit(&run, 0);
     expect_said(&run, "resumed from");
     program_run_reset(&run);
@@ -91,6 +103,25 @@ static void test_limit_within_the_first_sample(void **state)
     }
     assert_true(is_partial);
     expect_listing("a.exr a.exr.afterglow-unfinished");
+}
+
+/* A scene that does not come: standard input is waited for until the limit. */
+static void test_limit_while_waiting(void **state)
+{
+    (void)state;
+    assert_int_equal(mkfifo(in_folder("pipe"), 0600), 0);
+    const int writer = open(in_folder("pipe"), O_RDWR);
+    assert_true(writer >= 0);
+    const program_setting piped = {.input = in_folder("pipe")};
+    program_process process =
+        program_start(&piped, ARGUMENTS(SMALL, "--time-limit=0.01", "--stats=a.json", "-o", "a.exr", "-"));
+    program_run run = program_finish(&process);
+    expect_exit(&run, 3);
+    expect_said(&run, "error: time limit: it was reached before there was anything to write");
+    program_run_reset(&run);
+    close(writer);
+    expect_reason("a.json", "time-limit");
+    expect_listing("pipe");
 }
 
 static void test_preview(void **state)
@@ -193,6 +224,7 @@ int main(void)
         TEST_IN_FOLDER(test_time_limit),
         TEST_IN_FOLDER(test_limit_before_the_picture),
         TEST_IN_FOLDER(test_limit_within_the_first_sample),
+        TEST_IN_FOLDER(test_limit_while_waiting),
         TEST_IN_FOLDER(test_preview),
         TEST_IN_FOLDER(test_noise),
         TEST_IN_FOLDER(test_default_samples),
