@@ -178,10 +178,7 @@ static bool is_written_over(const options *o, const ag_scene *scene)
 /* Whether the picture is not rendered, since all its files are there. */
 static bool is_skipped(const options *o)
 {
-    for (int i = 0; i < o->outfile_count; i++)
-        if (!picture_mark_is_complete(o->outfiles[i]))
-            return false;
-    return o->no_clobber && o->outfile_count > 0;
+    return o->no_clobber && picture_mark_all_are_complete(o->outfiles, o->outfile_count);
 }
 
 bool file_conflicts_with_scene(const options *o, const ag_scene *scene)
@@ -216,6 +213,7 @@ enum { READ_SCENE = -1, READ_SKY = -2 };
 typedef struct use_list {
     file_use *uses; /* owned */
     size_t count;
+    bool has_common; /* what all frames read or write under one name is noted */
 } use_list;
 
 static void add_use(use_list *list, const char *path, int frame, int file)
@@ -225,10 +223,23 @@ static void add_use(use_list *list, const char *path, int frame, int file)
         list->uses[list->count++] = (file_use){f.device, f.inode, f.is_there ? 0 : name_hash(f.name), frame, file};
 }
 
-/* A file that all frames read under one name is noted once, with the first frame. */
-static bool is_noted(const char *pattern, int frame)
+/* A file that all frames read under one name is noted once, with the first of them that is rendered. */
+static bool is_noted(const use_list *list, const char *pattern)
 {
-    return pattern && strcmp(pattern, "-") != 0 && (frame == 0 || frames_has_placeholder(pattern));
+    return pattern && strcmp(pattern, "-") != 0 && (!list->has_common || frames_has_placeholder(pattern));
+}
+
+/* There is room for all. */
+static void note_uses(use_list *list, const options *o, const options *one, const output_list *outputs, int frame)
+{
+    if (is_noted(list, o->scene))
+        add_use(list, one->scene, frame, READ_SCENE);
+    if (is_noted(list, o->asked.sky_file))
+        add_use(list, one->asked.sky_file, frame, READ_SKY);
+    for (int i = 0; i < outputs->count; i++)
+        if (outputs->paths[i] != one->render.photon_map_file || is_noted(list, o->render.photon_map_file))
+            add_use(list, outputs->paths[i], frame, i);
+    list->has_common = true;
 }
 
 static bool add_uses(use_list *list, const options *o, int frame)
@@ -240,13 +251,8 @@ static bool add_uses(use_list *list, const options *o, int frame)
         is_whole ? realloc(list->uses, (list->count + (size_t)outputs.count + 2) * sizeof *larger) : NULL;
     if (larger) {
         list->uses = larger;
-        if (is_noted(o->scene, frame))
-            add_use(list, one.scene, frame, READ_SCENE);
-        if (is_noted(o->asked.sky_file, frame))
-            add_use(list, one.asked.sky_file, frame, READ_SKY);
-        for (int i = 0; i < outputs.count && !is_skipped(&one); i++)
-            if (outputs.paths[i] != one.render.photon_map_file || is_noted(o->render.photon_map_file, frame))
-                add_use(list, outputs.paths[i], frame, i);
+        if (!is_skipped(&one))
+            note_uses(list, o, &one, &outputs, frame);
     }
     output_list_reset(&outputs);
     frame_options_reset(&one, o->outfile_count);

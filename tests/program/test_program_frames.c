@@ -62,11 +62,23 @@ static void test_frames_in_each_others_files(void **state)
     expect_text(in_folder("sky.2.exr"), "a sky");
     assert_int_not_equal(access(in_folder("sky.1.exr"), F_OK), 0);
     assert_int_not_equal(access(in_folder("b.1.exr"), F_OK), 0);
-    /* nor is what is there already, and is not written again */
+    /* a picture that is there already is skipped: it is not written again, and other frames may read it */
     expect_end(ARGUMENTS(TINY, "--frames=2-3", "--no-clobber", "-o", "b.#.exr", "floor.pbrt"), 0,
                "skipped: 'b.3.exr' is there");
     expect_end(ARGUMENTS(TINY, "--frames=1-3", "--no-clobber", "--sky=b.3.exr", "-o", "b.#.exr", BOX), 0,
                "skipped: 'b.3.exr' is there");
+    /* the sky of a frame that is skipped is not read, so that another frame may write it; one of all frames is */
+    p = RENDER(BOX, TINY);
+    picture_reset(&p);
+    expect_end(ARGUMENTS(TINY, "-o", "d.2.exr", BOX), 0, "");
+    assert_int_equal(symlink("d.3.exr", in_folder("sky2.exr")), 0);
+    assert_int_equal(symlink("b.3.exr", in_folder("sky3.exr")), 0);
+    expect_end(ARGUMENTS(TINY, "--frames=2-4", "--no-clobber", "--sky=d.3.exr", "-o", "d.#.exr", BOX), 2,
+               "'d.3.exr' is to be written in frame 3, and read in frame 3");
+    expect_end(ARGUMENTS(TINY, "--frames=2-3", "--no-clobber", "--sky=sky%d.exr", "-o", "d.#.exr", BOX), 0,
+               "skipped: 'd.2.exr' is there");
+    expect_end(ARGUMENTS(TINY, "--frames=2-3", "--sky=sky%d.exr", "-o", "d.#.exr", BOX), 2,
+               "'d.3.exr' is to be written in frame 3, and read in frame 2");
     /* one map for all frames is no conflict */
     expect_end(ARGUMENTS("--size=8x8", "--spp=1", "--photons=2000", "--frames=1-2", "--photon-map=all.map", "-o",
                          "c.#.exr", BOX),
