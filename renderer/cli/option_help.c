@@ -160,8 +160,8 @@ void option_help_print(FILE *out)
         fill_in(option.text->help, false, &filled);
         print_wrapped(out, filled.text);
     }
-    fprintf(out, "\nExit status: 0 every file is complete on disk; 1 scene or input error; 2 usage; 3 system;\n"
-                 "128 + n ended by signal n.\n");
+    fprintf(out, "\nExit status: 0 every file is complete on disk; 1 scene or input error; 2 usage; 3 system, or the "
+                 "time limit\nwas reached before each pixel had a sample; 128 + n ended by signal n.\n");
 }
 
 void option_help_print_line(FILE *out, const ag_setting *option)
