@@ -1,5 +1,5 @@
 # Who makes the package is its maintainer, named as for Debian's own tools (debchange(1)): $DEBFULLNAME and $DEBEMAIL, else
-# $EMAIL, which may be "NAME <ADDRESS>". CPack reads this when it begins.
+# $EMAIL, which may be "NAME <ADDRESS>" or "<ADDRESS>". CPack reads this when it begins.
 set(name "The Afterglow authors")
 if(NOT "$ENV{DEBFULLNAME}" STREQUAL "")
   set(name "$ENV{DEBFULLNAME}")
@@ -8,10 +8,11 @@ set(mail root@localhost)
 foreach(variable EMAIL DEBEMAIL)
   if(NOT "$ENV{${variable}}" STREQUAL "")
     set(mail "$ENV{${variable}}")
-    if(mail MATCHES "^(.*[^ ]) *<(.*)>$")
+    if(mail MATCHES "^ *(.*)<(.*)>")
       set(mail "${CMAKE_MATCH_2}")
-      if("$ENV{DEBFULLNAME}" STREQUAL "")
-        set(name "${CMAKE_MATCH_1}")
+      string(STRIP "${CMAKE_MATCH_1}" named)
+      if("$ENV{DEBFULLNAME}" STREQUAL "" AND NOT named STREQUAL "")
+        set(name "${named}")
       endif()
     endif()
   endif()

@@ -25,6 +25,7 @@ expect_maintainer() { # NAME MAIL EXPECTED
 }
 expect_maintainer "" "Ann Packager <ann@example.org>" "Ann Packager <ann@example.org>"
 expect_maintainer "Bea Builder" "Ann Packager <ann@example.org>" "Bea Builder <ann@example.org>"
+expect_maintainer "" "<ann@example.org>" "The Afterglow authors <ann@example.org>"
 expect_maintainer "Bea Builder" bea@example.org "Bea Builder <bea@example.org>"
 
 export DEBFULLNAME="Ann Packager" DEBEMAIL=ann@example.org SOURCE_DATE_EPOCH=1700000000
