@@ -8,17 +8,17 @@
 
 #include <stdbool.h>
 
-/* Makes allocations fail that would bring the process beyond this many resident bytes, if it touched all that it
+/* Makes allocations fail that would bring the process beyond so many resident bytes, if it touched all that it
  * allocates. Since libraries and heaps reserve what they never touch, 24 MB more are allowed; before the scene is there
  * (is_loaded), and with it what ray tracing reserves, 256 MB. */
 void memory_limit_set(uint64_t bytes, bool is_loaded);
 
-/* While the scene is read: cancels the context once the process has more resident bytes than this, at which it looks
- * every 2 ms; 24 MB more than there are now are
- * always allowed, for a small scene's needs to be told. Without a thread to do so, the limit that is set is the only
- * one. The context is to outlive memory_limit_end_watch. */
+/* Begins to watch the process, while the scene is read: a thread looks every 2 ms how many resident bytes it has, and
+ * cancels the context once there are more than `bytes`, and 24 MB more than when the watch began, so that a small
+ * scene's needs can be told. Where no thread can be had, memory_limit_set alone bounds the reading. The context is to
+ * outlive memory_limit_end_watch. */
 void memory_limit_watch(uint64_t bytes, ag_context *context);
-/* Ends that. Returns whether there were more. */
+/* Ends the watch of memory_limit_watch. Returns whether it has cancelled the context. */
 bool memory_limit_end_watch(void);
 
 /* Takes the limit away: for what the prediction does not know, and for the next picture's scene. */

@@ -150,10 +150,13 @@ static const option_row ROWS[] = {
           .section = "Output",
           .help = "write statistics as JSON",
           .manual =
-              "Write statistics (counts, times, memory) as JSON, also of a picture that a signal has ended, or not let begin. "
+              "Write statistics (counts, times, memory) as JSON, also of a picture that a signal has ended, or not let "
+              "begin. "
               "Its end.reason is _samples_ (all that *--spp* allows), _noise_ (that of *--noise* was reached "
-              "before), _photons_ (*--photons-only*), _dry-run_, _memory_ (there was not enough), _time-limit_ or _signal_, where *--resume* goes on from "
-              "a checkpoint if there is one (a signal before the first picture writes none); end.noise is the noise reached, as *--noise* measures it, null where it is not "
+              "before), _photons_ (*--photons-only*), _dry-run_, _memory_ (there was not enough), _time-limit_ or "
+              "_signal_, where *--resume* goes on from "
+              "a checkpoint if there is one (a signal before the first picture writes none); end.noise is the noise "
+              "reached, as *--noise* measures it, null where it is not "
               "known, and end.samples tells how many samples pixels have had."},
      TEXT(stats)},
 };

@@ -171,13 +171,12 @@ static const option_row ROWS[] = {
                         "name of the node or of the camera. For another name the message says which there are. pbrt's "
                         "scenes have one camera, without a name."},
      TEXT(asked.camera_name)},
-    {.text =
-         {.name = "camera-from",
-          .argument = "X,Y,Z",
-          .section = "Scene",
-          .help = "where a camera stands that replaces the file's; world space",
-          .manual =
-              "Where a camera stands that replaces the file's, in world space; it is a pinhole that looks to *--camera-to*."},
+    {.text = {.name = "camera-from",
+              .argument = "X,Y,Z",
+              .section = "Scene",
+              .help = "where a camera stands that replaces the file's; world space",
+              .manual = "Where a camera stands that replaces the file's, in world space; it is a pinhole that looks to "
+                        "*--camera-to*."},
      .take = take_camera_from},
     {.text = {.name = "camera-to",
               .argument = "X,Y,Z",
@@ -197,7 +196,8 @@ static const option_row ROWS[] = {
           .section = "Scene",
           .help = "field of view of the camera of --camera-from across the shorter side (default: 45)",
           .manual =
-              "The field of view of the camera of *--camera-from*, across the shorter side of the picture. Default: 45."},
+              "The field of view of the camera of *--camera-from*, across the shorter side of the picture. Default: "
+              "45."},
      .take = take_fov},
     {.text = {.name = "up",
               .argument = "AXIS",
@@ -273,11 +273,13 @@ static const option_row ROWS[] = {
           .help = "memory for pictures of textures, as 512M or 4G (default 1536M), at least 16M, 0: no bound; what is "
                   "beyond it lies in a temporary file, or is read again from files that hold tiles (.tx)",
           .manual =
-              "Memory for the pictures of textures: bytes, or with K, M, G or T 1024, 1024^2, ... times as many; *1536M* by "
+              "Memory for the pictures of textures: bytes, or with K, M, G or T 1024, 1024^2, ... times as many; "
+              "*1536M* by "
               "default, at least *16M*, *0* for no bound. Up to half of it pictures are held whole. What is "
               "beyond lies in a temporary file without a name, in $*TMPDIR* or _/tmp_, of "
               "less than twice the pixels' size, and tiles of it are held in the rest. Files that themselves hold "
-              "tiles and coarser levels (.tx, tiled TIFF and OpenEXR) need no temporary file: their tiles are read from "
+              "tiles and coarser levels (.tx, tiled TIFF and OpenEXR) need no temporary file: their tiles are read "
+              "from "
               "them while the picture is rendered, and they are not to be changed meanwhile. Pictures are decoded one "
               "at a time. The picture that is rendered is the same."},
      .take = take_texture_memory},
@@ -316,7 +318,8 @@ static const option_row ROWS[] = {
               "whether it is there shows in a message. The scene's own name for its picture is ignored: "
               "what is written is what the command line names. Formats that assimp reads are read where "
               "the kernel has Landlock, which holds assimp's process in those folders, else refused. How much "
-              "a scene may take is bounded by *--memory*, and by *--time-limit* or a soft limit of CPU time (*ulimit -St*), which end its reading, too."},
+              "a scene may take is bounded by *--memory*, and by *--time-limit* or a soft limit of CPU time (*ulimit "
+              "-St*), which end its reading, too."},
      FLAG(context.is_confined)},
     {.text = {.name = "confine-to",
               .argument = "FOLDER",

@@ -183,8 +183,10 @@ static const option_row ROWS[] = {
               "limit. The picture counts as "
               "complete, and a message says how many samples it has; with *--checkpoint* a checkpoint "
               "stays for *--resume* to go on with. A limit that is reached before each pixel has one sample ends "
-              "the run with exit status 3: within the first sample what there is of the picture is written and marked as unfinished, "
-              "as at a signal; while the scene is read or photons are traced nothing is written but the statistics. Files are written, "
+              "the run with exit status 3: within the first sample what there is of the picture is written and marked "
+              "as unfinished, "
+              "as at a signal; while the scene is read or photons are traced nothing is written but the statistics. "
+              "Files are written, "
               "and denoised, after the limit. "
               "*--dry-run* does not heed it."},
      .take = take_time_limit},
@@ -199,8 +201,10 @@ static const option_row ROWS[] = {
               "1024^2, ... What a picture will need is predicted when the scene is there (see "
               "*--dry-run*): where it is more, a message tells how much and for what, and the exit status "
               "is 3. A run that needs more all the same ends for want of memory instead of taking it from "
-              "others; since libraries reserve memory that they never touch, 24 MB beyond are allowed then. While the scene is read "
-              "the memory that is in use is looked at every 2 ms, and reading ends when it is more, and 24 MB more than before; it may be passed by "
+              "others; since libraries reserve memory that they never touch, 24 MB beyond are allowed then. While the "
+              "scene is read "
+              "the memory that is in use is looked at every 2 ms, and reading ends when it is more, and 24 MB more "
+              "than before; it may be passed by "
               "what is taken meanwhile, up to 256 MB."},
      .take = take_memory},
     {.text =
@@ -211,8 +215,10 @@ static const option_row ROWS[] = {
               "Load the scene, predict how long the picture would take on this machine, were it idle, and "
               "how much memory at the most, print that on standard output, and write no picture. For the "
               "time photons are traced, one and a half million into each map at most, and some hundred blocks of the "
-              "picture's pixels are rendered, or half of them where it is small. *--stats* has the times, the CPU time and "
-              "the memory by its parts under _prediction_. What *--denoise* takes is not in it, and limits of time, checkpoints and "
+              "picture's pixels are rendered, or half of them where it is small. *--stats* has the times, the CPU time "
+              "and "
+              "the memory by its parts under _prediction_. What *--denoise* takes is not in it, and limits of time, "
+              "checkpoints and "
               "photon maps that are kept already are not heeded."},
      FLAG(dry_run)},
     {.text = {.name = "preview",
@@ -244,18 +250,24 @@ static const option_row ROWS[] = {
           .help = "show the picture in a browser while it is rendered: a page on that port of this machine, at the URL "
                   "that is told; 0: a port that is free",
           .manual =
-              "Show the picture in a browser while it is rendered, by a page on that port of this machine, or with 0 on "
+              "Show the picture in a browser while it is rendered, by a page on that port of this machine, or with 0 "
+              "on "
               "one that is free. Its URL, with a token that no one can guess, is told on standard error. The page "
-              "has the picture and every layer of *--aov*, through any display and view of the config and any exposure, "
+              "has the picture and every layer of *--aov*, through any display and view of the config and any "
+              "exposure, "
               "says how far the work is and what takes it, and has a button to stop and keep: the picture as of the "
               "last pass over it that is complete is then written, counts as complete, and the exit status is 0; with "
-              "*--checkpoint* a checkpoint stays for *--resume*. Keys and mouse move the camera, where *Walk* is chosen "
-              "on the page: the scene is then rendered from elsewhere, on the same photon map, coarsely first, while the "
+              "*--checkpoint* a checkpoint stays for *--resume*. Keys and mouse move the camera, where *Walk* is "
+              "chosen "
+              "on the page: the scene is then rendered from elsewhere, on the same photon map, coarsely first, while "
+              "the "
               "picture waits for *Back to the picture*, or for nobody to look any more; *Stop and keep* writes what is "
-              "seen from there. The picture that is written otherwise has the same bits as without the page. While the page is looked at, the program does not end when the files are "
+              "seen from there. The picture that is written otherwise has the same bits as without the page. While the "
+              "page is looked at, the program does not end when the files are "
               "written, but for *--time-limit*, until *Stop* is pressed. Requests without the token are "
               "refused, as are those under another machine's name or from another site's page; none names a file. The "
-              "film is in memory twice; *--memory* and *--dry-run* count that and the page's own pictures, but not layers "
+              "film is in memory twice; *--memory* and *--dry-run* count that and the page's own pictures, but not "
+              "layers "
               "that are looked at, nor a walk: both are left where there is no memory for them."},
      .take = take_serve},
     {.text = {.name = "serve-address",
@@ -277,12 +289,14 @@ static const option_row ROWS[] = {
               "auto (default), bar, picture (in the terminal; blocks or sixel: by these), plain (or lines), alf, json "
               "or none (or off)",
           .manual =
-              "*auto* (default: a bar on a terminal, else plain), *bar*, *picture*, *blocks* or *sixel* (see below), *plain* or *lines* (whole lines "
+              "*auto* (default: a bar on a terminal, else plain), *bar*, *picture*, *blocks* or *sixel* (see below), "
+              "*plain* or *lines* (whole lines "
               "with *Progress: NN%*), *alf* (lines with *ALF_PROGRESS NN%* on standard output, as render "
               "queues read them), *json* (one object per line), *none* or *off*. Where it can be told, "
               "each says how long the phase will take. *picture* draws the picture into the terminal while it is "
               "rendered, above the bar, through *--display*, *--view* and *--exposure* as a _.png_ file, as large as "
-              "fits, at most four times a second: pixel by pixel as sixels in up to 256 colours of its own where the terminal "
+              "fits, at most four times a second: pixel by pixel as sixels in up to 256 colours of its own where the "
+              "terminal "
               "says that it has them, and how large its characters are, else as half blocks (U+2580) in 24-bit "
               "colours. The terminal is asked for it at the beginning, and has a second for its answer; it is "
               "not asked by *blocks* (half blocks) and *sixel* (characters are taken for 10 x 20 pixels where "
