@@ -261,6 +261,8 @@ static void any_builder_without_memory_is_an_error(void **state)
 {
     (void)state;
     int seen[WRONG + 1] = {0};
+    if (IS_SANITIZED)
+        skip(); /* memory is not refused there, and a child of TSan's may not begin threads */
     char *text = ball_text(400, 400, "WorldBegin");
     for (int i = 0; i < 8; i++) {
         const pid_t child = fork();
@@ -275,7 +277,7 @@ static void any_builder_without_memory_is_an_error(void **state)
     free(text);
     print_message("%d of 8 builds were without memory\n", seen[NO_MEMORY]);
     assert_int_equal(seen[WRONG], 0);
-    if (!IS_SANITIZED && cpu_count_available() > 1) /* else no other thread builds, or memory is not refused */
+    if (cpu_count_available() > 1) /* else no other thread builds */
         assert_true(seen[NO_MEMORY] > 0);
 }
 
