@@ -13,8 +13,9 @@
  * where either map is empty or the dim parts are black; 0 where the global map has none. Errors: AG_ERROR_MEMORY. */
 ag_status caustic_radius_find(const photon_map *global, const photon_set *caustic, float *out_radius);
 
-/* Returns the least area, m^2, on which the photons of an estimate of that map count: there a photon of the mean flux
- * is no brighter than the dim parts of the scene. */
+/* Returns the least area, m^2, on which the photons of an estimate of that map count. Where the map's largest radius is
+ * that of caustic_radius_find, and no other bound's, a photon of the mean flux, weighted by flux, is as bright there as
+ * the dim parts of the scene. */
 double caustic_least_area(const photon_map *caustic);
 
 #endif

@@ -28,10 +28,10 @@ bool photon_arrival_meet(const scene *s, scene_ray *in_out_ray, uint64_t *in_out
     return true;
 }
 
-ray_end photon_arrival_travel(const scene *s, scene_ray *in_out_ray, vec2 u, uint64_t *in_out_cut, photon_arrival *out,
-                              rgb *out_weight)
+ray_end photon_arrival_travel(const scene *s, scene_ray *in_out_ray, rgb carried, vec2 u, uint64_t *in_out_cut,
+                              photon_arrival *out, rgb *out_weight)
 {
-    ray_end end = transmittance_travel(s, in_out_ray, u, in_out_cut, &out->hit, out_weight);
+    ray_end end = transmittance_travel(s, in_out_ray, carried, u, in_out_cut, &out->hit, out_weight);
     if (end != RAY_ENDS_NOWHERE)
         note_arrival(in_out_ray, out);
     return end;

@@ -28,7 +28,7 @@ bool photon_arrival_meet(const scene *s, scene_ray *in_out_ray, uint64_t *in_out
 
 /* photon_arrival_meet where media that scatter lie on the way: the ray may end in one of them, as two random numbers
  * decide, and *out_weight is then that of the flux there (transmittance_travel). */
-ray_end photon_arrival_travel(const scene *s, scene_ray *in_out_ray, vec2 u, uint64_t *in_out_cut,
+ray_end photon_arrival_travel(const scene *s, scene_ray *in_out_ray, rgb carried, vec2 u, uint64_t *in_out_cut,
                               photon_arrival *out_arrival, rgb *out_weight);
 
 /* Scatters flux in the medium of the ray that has arrived there: *in_out_ray goes on from there. */

@@ -33,8 +33,8 @@ typedef struct photon_map {
     int flux_exponent_max;     /* largest exponent of the photons' fluxes: the unit of sums */
     int irradiance_bias;       /* added to a slot's 6-bit exponent */
     float irradiance_unit[64]; /* of a slot's mantissas, by its exponent */
-    float
-        surely_reaches; /* photon_map_reaches holds where irradiance x squared distance is below this times the flux */
+    /* photon_map_reaches holds where irradiance x squared distance is below this times the flux. */
+    float surely_reaches;
     const scene *surfaces; /* borrowed, or NULL */
     bool is_borrowed;      /* blocks and nodes are a photon_file's */
     atomic_u8 *checks; /* of a map from a file: irradiance_word_check of each irradiance photon, borrowed; else NULL */

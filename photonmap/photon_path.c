@@ -338,7 +338,8 @@ static ray_end meet(photon_tracer *t, photon_path *path, photon_arrival *out_at,
 {
     t->out->rays++;
     if (t->s->has_scattering_media && t->settings->kind == PHOTON_GLOBAL)
-        return photon_arrival_travel(t->s, &path->ray, rng_vec2(&path->random), &t->out->rays_cut, out_at, out_weight);
+        return photon_arrival_travel(t->s, &path->ray, path->flux, rng_vec2(&path->random), &t->out->rays_cut, out_at,
+                                     out_weight);
     return photon_arrival_meet(t->s, &path->ray, &t->out->rays_cut, out_at, out_weight) ? RAY_ENDS_AT_SURFACE
                                                                                         : RAY_ENDS_NOWHERE;
 }

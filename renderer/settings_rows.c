@@ -158,7 +158,8 @@ static const setting_row ROWS[] = {
               .section = "Light",
               .help = "scatterings between lamp and eye at most, up to 100 (default: roulette)",
               .manual = "Scatterings between lamp and eye at most, up to 100. By default, and at 100, Russian "
-                        "roulette alone ends the paths.",
+                        "roulette alone ends the paths; but in media that scatter, 100 bounds them too: light that fog "
+                        "without absorption scatters more often is lost.",
               .is_of_photon_map = true},
      FIELD(max_depth),
      .kind = SETTING_INTEGER,

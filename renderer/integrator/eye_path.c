@@ -97,7 +97,7 @@ bool eye_path_trace(const transport *t, eye_worker *worker, eye_path *path, eye_
     vec2 u = {0.0f, 0.0f};
     if (t->s->has_scattering_media)
         u = sampler_2d(&path->where, SAMPLE_DISTANCE, eye_path_key(path));
-    bool is_met = transport_travel(t, worker, path->ray, u, out);
+    bool is_met = transport_travel(t, worker, path->ray, path->throughput, u, out);
     path->throughput = rgb_mul(path->throughput, out->transmittance);
     worker->camera_rays_met += is_met && is_camera_ray;
     if (is_met && is_camera_ray && t->wants_layers)

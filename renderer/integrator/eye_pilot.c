@@ -182,7 +182,7 @@ static void gather_points(const transport *t, eye_worker *worker, const vertex *
             continue;
         scene_ray ray = transport_scattered_ray(t, v, first.direction, false);
         ray.skips_uv = true;
-        if (!transport_travel_to(t, worker, ray, &random, &met))
+        if (!transport_travel_to(t, worker, ray, first.weight, &random, &met))
             continue;
         if (!met.is_in_medium)
             note_caustic_way(t, &met, out);

@@ -58,7 +58,7 @@ static void follow_alone(gathering *g, uint32_t number, vec3 direction, rgb weig
     ray.cone = transport_gather_cone(g->request->from);
     g->worker->rays_gather++;
     g->cost += EYE_COST_OF_RAY;
-    if (transport_travel_to(g->t, g->worker, ray, &random, &v))
+    if (transport_travel_to(g->t, g->worker, ray, weight, &random, &v))
         follow(g, number, weight, &v);
 }
 

@@ -112,7 +112,7 @@ bool gather_path_follow(const transport *t, eye_worker *worker, vertex *v, rng r
         if (is_traced && !goes_straight)
             start = (traced_start){true, vertex_position(v), vertex_light_normal(v, BSDF_TRACED),
                                    next.is_delta ? 0.0f : next.pdf_solid_angle};
-        if (transport_travel_to(t, worker, ray, &random, v))
+        if (transport_travel_to(t, worker, ray, rgb_mul(first, throughput), &random, v))
             continue;
         if (start.is_set) {
             rgb weight = rgb_mul(rgb_mul(first, throughput), v->transmittance);
@@ -158,7 +158,8 @@ bool gather_path_bounce(const transport *t, eye_worker *worker, rng random, floa
         return false;
     scene_ray ray = transport_scattered_ray(t, &v, next.direction, false);
     worker->rays_gather++;
-    return transport_travel_to(t, worker, ray, &random, &v) &&
-           gather_path_follow(t, worker, &v, random, left, rgb_mul(throughput, next.weight), share_seen, in_out_known,
-                              in_out_end, in_out_weight);
+    throughput = rgb_mul(throughput, next.weight);
+    return transport_travel_to(t, worker, ray, throughput, &random, &v) &&
+           gather_path_follow(t, worker, &v, random, left, throughput, share_seen, in_out_known, in_out_end,
+                              in_out_weight);
 }

@@ -28,9 +28,9 @@ bool transport_meet(const transport *t, eye_worker *worker, scene_ray ray, verte
 }
 
 /* Moves along the ray as transport_travel does, without completing the vertex. */
-static bool travel(const transport *t, eye_worker *worker, scene_ray ray, vec2 u, vertex *out)
+static bool travel(const transport *t, eye_worker *worker, scene_ray ray, rgb carried, vec2 u, vertex *out)
 {
-    ray_end end = transmittance_travel(t->s, &ray, u, &worker->rays_cut, &out->hit, &out->transmittance);
+    ray_end end = transmittance_travel(t->s, &ray, carried, u, &worker->rays_cut, &out->hit, &out->transmittance);
     out->arrived = ray;
     out->is_in_medium = end == RAY_ENDS_IN_MEDIUM;
     if (end == RAY_ENDS_NOWHERE)
@@ -39,17 +39,18 @@ static bool travel(const transport *t, eye_worker *worker, scene_ray ray, vec2 u
     return true;
 }
 
-bool transport_travel_to(const transport *t, eye_worker *worker, scene_ray ray, rng *random, vertex *out_vertex)
+bool transport_travel_to(const transport *t, eye_worker *worker, scene_ray ray, rgb carried, rng *random,
+                         vertex *out_vertex)
 {
-    return t->s->has_scattering_media ? travel(t, worker, ray, rng_vec2(random), out_vertex)
+    return t->s->has_scattering_media ? travel(t, worker, ray, carried, rng_vec2(random), out_vertex)
                                       : transport_meet(t, worker, ray, out_vertex);
 }
 
-bool transport_travel(const transport *t, eye_worker *worker, scene_ray ray, vec2 u, vertex *out_vertex)
+bool transport_travel(const transport *t, eye_worker *worker, scene_ray ray, rgb carried, vec2 u, vertex *out_vertex)
 {
     if (!t->s->has_scattering_media)
         return transport_trace(t, worker, ray, out_vertex);
-    if (!travel(t, worker, ray, u, out_vertex))
+    if (!travel(t, worker, ray, carried, u, out_vertex))
         return false;
     transport_complete(t, out_vertex);
     return true;

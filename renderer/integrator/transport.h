@@ -39,7 +39,7 @@ typedef struct eye_worker {
     uint64_t rays_camera, rays_shadow, rays_gather, rays_path;
     uint64_t rays_estimate;                /* of photon estimates and lookups at the point itself */
     uint64_t estimates_caustic;            /* estimates of the caustic map's light */
-    uint64_t camera_rays_met;              /* those that met a surface */
+    uint64_t camera_rays_met;              /* those that met a surface or were scattered in a medium */
     uint64_t samples_not_finite, rays_cut; /* cut by TRANSMITTANCE_CROSSINGS_MAX */
     arena *scratch;                        /* for neighbours; what render.c has tried out beforehand always fits */
     gather_batch *batch;                   /* of the samples under way; NULL for path tracing */
@@ -72,13 +72,14 @@ sample_counts transport_sample_counts(const transport *t, uint32_t lights, bool 
 bool transport_trace(const transport *t, eye_worker *worker, scene_ray ray, vertex *out_vertex);
 
 /* Follows a ray of a path of light as transport_trace does, but where a medium on the way scatters light the vertex may
- * be a point in it: see transmittance_travel. u: decides that; it counts in scenes alone that have such media
+ * be a point in it: see transmittance_travel. carried, u: decide that; they count in scenes alone that have such media
  * (has_scattering_media). Returns whether there is a vertex. */
-bool transport_travel(const transport *t, eye_worker *worker, scene_ray ray, vec2 u, vertex *out_vertex);
+bool transport_travel(const transport *t, eye_worker *worker, scene_ray ray, rgb carried, vec2 u, vertex *out_vertex);
 
 /* transport_travel in two steps, as transport_meet and transport_complete are those of transport_trace. It draws from
  * the random numbers in scenes alone that have media which scatter. */
-bool transport_travel_to(const transport *t, eye_worker *worker, scene_ray ray, rng *random, vertex *out_vertex);
+bool transport_travel_to(const transport *t, eye_worker *worker, scene_ray ray, rgb carried, rng *random,
+                         vertex *out_vertex);
 
 /* transport_trace in two steps, for callers that may not need the second: transport_meet finds the hit, and
  * transport_complete how the vertex scatters and whether it shines. */

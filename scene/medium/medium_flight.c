@@ -5,10 +5,15 @@
 
 static float channel_of(rgb color, int channel) { return channel == 0 ? color.r : channel == 1 ? color.g : color.b; }
 
-medium_flight medium_flight_begin(vec2 u)
+medium_flight medium_flight_begin(rgb carried, vec2 u)
 {
-    int channel = (int)(3.0f * u.x);
-    return (medium_flight){.channel = channel < 2 ? channel : 2,
+    const float sum = carried.r + carried.g + carried.b;
+    rgb probability = sum > 0.0f ? rgb_scale(carried, 1.0f / sum) : rgb_gray(1.0f / 3.0f);
+    int channel = u.x < probability.r ? 0 : u.x < probability.r + probability.g ? 1 : 2;
+    if (channel == 2 && !(probability.b > 0.0f)) /* by rounding */
+        channel = probability.g > 0.0f ? 1 : 0;
+    return (medium_flight){.channel = channel,
+                           .probability = probability,
                            .thickness = (float)-natural_logarithm(1.0 - (double)u.y),
                            .transmittance = rgb_gray(1.0f),
                            .density = rgb_gray(1.0f)};
@@ -39,6 +44,12 @@ bool medium_flight_pass(medium_flight *f, const medium *m, float distance, float
 
 rgb medium_flight_weight(const medium_flight *f)
 {
-    float density = rgb_mean(f->density);
-    return density > 0.0f ? rgb_scale(f->transmittance, 1.0f / density) : rgb_gray(0.0f);
+    /* channels of less than this probability carry nothing that is seen, and their weight might overflow */
+    static const float PROBABILITY_MIN = 1e-20f;
+    const rgb p = f->probability, t = f->transmittance;
+    float density = p.r * f->density.r + p.g * f->density.g + p.b * f->density.b;
+    if (!(density > 0.0f))
+        return rgb_gray(0.0f);
+    return (rgb){p.r > PROBABILITY_MIN ? t.r / density : 0.0f, p.g > PROBABILITY_MIN ? t.g / density : 0.0f,
+                 p.b > PROBABILITY_MIN ? t.b / density : 0.0f};
 }

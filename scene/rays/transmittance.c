@@ -139,10 +139,10 @@ bool transmittance_intersect(const scene *s, scene_ray *ray, uint64_t *in_out_cu
     return is_hit && !rgb_is_black(*out_transmittance);
 }
 
-ray_end transmittance_travel(const scene *s, scene_ray *ray, vec2 u, uint64_t *in_out_cut, surface_hit *out_hit,
-                             rgb *out_weight)
+ray_end transmittance_travel(const scene *s, scene_ray *ray, rgb carried, vec2 u, uint64_t *in_out_cut,
+                             surface_hit *out_hit, rgb *out_weight)
 {
-    medium_flight flight = medium_flight_begin(u);
+    medium_flight flight = medium_flight_begin(carried, u);
     scene_ray last = *ray;
     ray_end end = follow(s, &last, INFINITY, false, in_out_cut, out_hit, NULL, &flight);
     ray->medium = last.medium;

@@ -1,8 +1,8 @@
-/* transmittance.h: the share of light that is left along a ray between two vertices of a path: media absorb, and light
- * crosses interfaces unbent. All rays of photon tracing and rendering are cast here.
- * Rests on: Pharr, Jakob, Humphreys, "Physically Based Rendering", 4th ed., 2023, 11.4 and 14.2 (medium interfaces).
- * Flow: transport, direct lighting, photon tracing -> [here] -> rays.h, which is enough where a scene has neither.
- * Threads: pure but for the caller's counter. */
+/* transmittance.h: the share of light that is left along a ray between two vertices of a path: media absorb and
+ * scatter, and light crosses interfaces unbent. All rays of photon tracing and rendering are cast here. Rests on:
+ * Pharr, Jakob, Humphreys, "Physically Based Rendering", 4th ed., 2023, 11.4 and 14.2 (medium interfaces). Flow:
+ * transport, direct lighting, photon tracing -> [here] -> rays.h, which is enough where a scene has neither. Threads:
+ * pure but for the caller's counter. */
 #ifndef AFTERGLOW_TRANSMITTANCE_H
 #define AFTERGLOW_TRANSMITTANCE_H
 
@@ -26,11 +26,12 @@ typedef enum ray_end {
 } ray_end;
 
 /* Follows a ray of unit direction, as transmittance_intersect does, up to where a medium scatters it, which two random
- * numbers in [0, 1) decide. *out_weight: of the light that comes from there: the transmittance over the probability of
- * coming there, and in a medium times sigma_s. out_hit: in a medium, the position, the distance and the time are those
- * of a point of no surface (epsilon 0), and the normals point back along the ray. */
-ray_end transmittance_travel(const scene *s, scene_ray *ray, vec2 u, uint64_t *in_out_cut, surface_hit *out_hit,
-                             rgb *out_weight);
+ * numbers in [0, 1) and what the light carries decide (medium_flight_begin). *out_weight: of the light that comes from
+ * there: the transmittance over the probability of coming there, and in a medium times sigma_s. out_hit: in a medium,
+ * the position, the distance and the time are those of a point of no surface (epsilon 0), and the normals point back
+ * along the ray. */
+ray_end transmittance_travel(const scene *s, scene_ray *ray, rgb carried, vec2 u, uint64_t *in_out_cut,
+                             surface_hit *out_hit, rgb *out_weight);
 
 /* Returns whether transmittance_intersect of such a ray equals scene_intersect, since nothing on its way absorbs. */
 static inline bool transmittance_is_one(const scene *s, const scene_ray *ray)

@@ -343,8 +343,8 @@ static double see(test_run *r, const scene *s, const served_case *c, double phot
     return seen / truth;
 }
 
-/* Boards, small balls and leaves have their light where estimates are seen directly, within 3 %, with few photons a
- * disc and with many, and no estimate is brighter than so many photons on the least area. */
+/* Boards, small balls and leaves have their light where estimates are seen directly, within 3 % and three standard
+ * errors, with few photons a disc and with many, and no estimate is brighter than so many photons on the least area. */
 static void small_surfaces_are_seen(void **state)
 {
     (void)state;

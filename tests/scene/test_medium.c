@@ -28,7 +28,8 @@ static void expect_flights(const stretch *way, int count)
     double through[3] = {0}, scattered[4][3] = {{0}}, moments[4][3] = {{0}};
     const double share = 1.0 / (SIDE * 3.0);
     for (int i = 0; i < 3 * SIDE; i++) {
-        medium_flight f = medium_flight_begin((vec2){((float)(i % 3) + 0.5f) / 3.0f, ((float)(i / 3) + 0.5f) / SIDE});
+        medium_flight f =
+            medium_flight_begin(rgb_gray(1.0f), (vec2){((float)(i % 3) + 0.5f) / 3.0f, ((float)(i / 3) + 0.5f) / SIDE});
         float distance = 0.0f;
         int k = 0;
         while (k < count && !medium_flight_pass(&f, way[k].m, way[k].length, &distance))
@@ -80,20 +81,66 @@ static void flights_end_well(void **state)
 {
     (void)state;
     const vec2 most = {0x1.fffffep-1f, 0x1.fffffep-1f};
-    medium_flight f = medium_flight_begin(most);
+    medium_flight f = medium_flight_begin(rgb_gray(1.0f), most);
     float distance = -1.0f;
     assert_int_equal(f.channel, 2);
     assert_true(medium_flight_pass(&f, &FOG, INFINITY, &distance) && distance > 7.0f && isfinite(distance));
     rgb weight = medium_flight_weight(&f);
     assert_true(rgb_is_finite(weight) && weight.b > 0.0f);
-    f = medium_flight_begin((vec2){0.0f, 0.0f}); /* red, at once; but red is not scattered */
+    f = medium_flight_begin(rgb_gray(2.0f), (vec2){0.0f, 0.0f}); /* red, at once; but red is not scattered */
     assert_false(medium_flight_pass(&f, &MIST, INFINITY, &distance));
     weight = medium_flight_weight(&f);
     assert_true(weight.r == 3.0f && weight.g == 0.0f && weight.b == 0.0f);
-    f = medium_flight_begin(most); /* far beyond what floats hold */
+    f = medium_flight_begin(rgb_gray(1.0f), most); /* far beyond what floats hold */
     assert_false(medium_flight_pass(&f, &FOG, 8.0f, &distance));
     f.transmittance = f.density = rgb_gray(0.0f);
     assert_true(rgb_is_black(medium_flight_weight(&f)));
+}
+
+/* Light of all colours goes from scattering to scattering in a medium that scatters them very differently and absorbs
+ * nothing: all colours together never carry more than they began with, and each has, in the mean over paths, what it
+ * began with. */
+static void no_colour_grows(void **state)
+{
+    (void)state;
+    enum { PATHS = 20000, SCATTERINGS = 12 };
+    static const medium MILK = {.sigma_s = {0.2f, 2.0f, 20.0f}};
+    rng random = test_random(41);
+    double sums[3] = {0}, squares[3] = {0};
+    for (int i = 0; i < PATHS; i++) {
+        rgb carried = rgb_gray(1.0f);
+        for (int k = 0; k < SCATTERINGS; k++) {
+            float distance;
+            medium_flight f = medium_flight_begin(carried, rng_vec2(&random));
+            assert_true(medium_flight_pass(&f, &MILK, INFINITY, &distance));
+            carried = rgb_mul(carried, medium_flight_weight(&f));
+            assert_true(carried.r + carried.g + carried.b <= 3.0f * (1.0f + 1e-5f * (float)(k + 1)));
+        }
+        const double ends[3] = {carried.r, carried.g, carried.b};
+        for (int c = 0; c < 3; c++)
+            sums[c] += ends[c], squares[c] += ends[c] * ends[c];
+    }
+    for (int c = 0; c < 3; c++) {
+        double mean = sums[c] / PATHS, sigma = sqrt((squares[c] / PATHS - mean * mean) / PATHS);
+        print_message("channel %d: %.4f +- %.4f\n", c, mean, sigma);
+        assert_true(fabs(mean - 1.0) <= 4.0 * sigma && sigma < 0.02);
+    }
+}
+
+/* A channel that carries nothing is never picked, and weighs nothing. */
+static void empty_channels_are_not_picked(void **state)
+{
+    (void)state;
+    static const medium MILK = {.sigma_s = {0.2f, 2.0f, 20.0f}};
+    for (int i = 0; i < 1000; i++) {
+        float distance;
+        medium_flight f = medium_flight_begin((rgb){0.5f, 0.0f, 0.0f}, (vec2){((float)i + 0.5f) / 1000.0f, 0.5f});
+        assert_int_equal(f.channel, 0);
+        assert_true(medium_flight_pass(&f, &MILK, INFINITY, &distance));
+        rgb weight = medium_flight_weight(&f);
+        assert_close(weight.r, 1.0, 1e-5);
+        assert_true(weight.g == 0.0f && weight.b == 0.0f);
+    }
 }
 
 static const float GS[] = {-0.999f, -0.9f, -0.5f, -1e-4f, 0.0f, 1e-4f, 0.3f, 0.85f, 0.99f};
@@ -211,7 +258,7 @@ static void rays_travel_across_interfaces(void **state)
         uint64_t cut = 0;
         ray.medium = 1;
         vec2 u = {((float)(i % 3) + 0.5f) / 3.0f, ((float)(i / 3) + 0.5f) / (RAYS / 3)};
-        ray_end end = transmittance_travel(s, &ray, u, &cut, &hit, &weight);
+        ray_end end = transmittance_travel(s, &ray, rgb_gray(1.0f), u, &cut, &hit, &weight);
         assert_true(end != RAY_ENDS_NOWHERE && cut == 0);
         double *sums = end == RAY_ENDS_IN_MEDIUM ? in_fog : at_wall;
         assert_int_equal(ray.medium, end == RAY_ENDS_IN_MEDIUM ? 0 : 1);
@@ -238,6 +285,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(flights_have_their_weights),
         cmocka_unit_test(flights_end_well),
+        cmocka_unit_test(no_colour_grows),
+        cmocka_unit_test(empty_channels_are_not_picked),
         cmocka_unit_test(phase_function_is_normalized),
         cmocka_unit_test(phase_function_is_sampled_by_its_density),
         cmocka_unit_test(bsdf_in_a_medium_is_the_phase_function),
