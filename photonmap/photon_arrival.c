@@ -9,7 +9,8 @@ static const float LED_SHARE = 0.5f;
 /* The share in a caustic map, whose photons come by ways as well that no importon tells of. */
 static const float CAUSTIC_LED_SHARE = 0.2f;
 
-/* What a ray carries, at the hit. */
+/* Notes at the hit the direction of the ray and, where its cone is wide, the footprint, and widens the cone up to
+ * there. */
 static void note_arrival(scene_ray *ray, photon_arrival *at)
 {
     at->arrived = ray->direction;

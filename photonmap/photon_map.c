@@ -138,8 +138,7 @@ ag_status photon_map_create(run_context *run, photon_set *set, const photon_map_
 /* An irradiance is rejected where this many photons, on average, would lie nearer to the point than its own. */
 static const double EMPTY_DISC_PHOTONS = 8.0;
 
-/* Of the largest product of irradiance and squared distance that is not rejected: what rounding cannot bring past it.
- */
+/* Rounding in float brings no product below this share of the limit past the limit itself. */
 static const double SURELY = 0.999;
 
 static double photons_each(const photon_map *map)

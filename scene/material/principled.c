@@ -67,8 +67,8 @@ static float interface_reflectance_of(const principled_point *m, float alpha, fl
     return rgb_max(m->dielectric_f0) * interface.of_f0 + m->specular * interface.of_f90;
 }
 
-/* What a dielectric interface reflects at a cosine; of brushed facets, which reflect more in some directions about the
- * normal than in others, what the smoother or the rougher axis alone would, whichever is more. */
+/* Returns the share of the light at a cosine that a dielectric interface reflects. Brushed facets reflect more in some
+ * directions about the normal than in others: they count as rough as on that of their axes which reflects more. */
 static float interface_reflectance(const principled_point *m, float cosine)
 {
     const float u = interface_reflectance_of(m, m->facets.alpha_u, cosine);

@@ -10,7 +10,7 @@ enum { INTEGRATOR_COUNT = 2 };
 static const agreement_bounds BLURRED = {AGREEMENT_BLUR, 0.01, 0.05};
 static const agreement_bounds UNBIASED = {0.0, 0.005, 0.03};
 
-/* What is absorbed nowhere is 1 everywhere, for any way of scattering. */
+/* A medium that absorbs nothing, under an even sky of radiance 1, is seen with radiance 1, however it scatters. */
 static void test_furnace(void **state)
 {
     (void)state;

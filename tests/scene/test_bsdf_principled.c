@@ -108,7 +108,8 @@ static void a_white_furnace(void **state)
         }
 }
 
-/* What the base gets is worked out by the axis that reflects more, for all directions about the normal. */
+/* Brushed facets and the base below them reflect no more light than comes, whatever its direction about the normal:
+ * the base gets what the axis that reflects more leaves to it. */
 static void brushed_surfaces_gain_nothing(void **state)
 {
     (void)state;

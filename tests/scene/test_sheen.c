@@ -137,8 +137,8 @@ static void values_are_symmetric_and_bounded(void **state)
 
 /* --- cloth --- */
 
-/* What a white base, which gives back all that the sheen leaves to it, reflects of even light, and the sheen alone; by
- * directions that are dense along the surface. */
+/* Writes the share of even light that a sheen reflects together with its white base, which gives back all that the
+ * sheen leaves to it, and the share that the sheen reflects alone. Directions are dense along the surface. */
 static void furnace(const bsdf *b, double *out_all, double *out_sheen)
 {
     enum { STEPS = 300 / FEWER };
