@@ -5,19 +5,23 @@
 static uint32_t find_leaves(const photon_query *q, photon_subtree subtree, float most, uint32_t *out_leaves)
 {
     uint32_t count = 0, base = (1u << q->tree->depth) - 1;
-    for (uint32_t way = 0; way < PHOTON_SUBTREE_LEAVES; way++) {
+    const uint32_t levels = q->tree->depth - (31 - (uint32_t)__builtin_clz(subtree.node + 1));
+    for (uint32_t way = 0; way < 1u << levels; way++) {
         photon_lanes offset = subtree.offset;
         uint32_t node = subtree.node;
-        for (uint32_t level = PHOTON_SUBTREE_LEVELS; level-- > 0;) {
+        bool is_there = true; /* beyond a plane at infinity there is nothing */
+        for (uint32_t level = levels; level-- > 0;) {
             photon_tree_node n = q->tree->nodes[node];
             uint32_t goes_right = way >> level & 1;
-            if (goes_right != (q->position[n.axis] >= n.split))
+            if (goes_right != (q->position[n.axis] >= n.split)) {
                 offset = photon_lanes_replace(offset, q->at - photon_lanes_fill(n.split), n.axis);
+                is_there = is_there && n.split < INFINITY;
+            }
             node = 2 * node + 1 + goes_right;
         }
         photon_lanes square = offset * offset;
         float beyond = square[0] + square[1] + square[2];
-        if (beyond <= most && beyond < INFINITY) /* beyond a plane at infinity there is nothing */
+        if (is_there && beyond <= most && beyond < INFINITY)
             out_leaves[count++] = node - base;
     }
     return count;
@@ -138,10 +142,11 @@ static uint32_t sum_in_region(const photon_disc *disc, const surface_region *reg
     return inside;
 }
 
-const disc_kernels disc_kernels_plain = {find_leaves, collect, count_within, list_between, sum_on_level, sum_in_region};
+const disc_kernels disc_kernels_plain = {PHOTON_SUBTREE_LEVELS, find_leaves,  collect,      count_within,
+                                         list_between,          sum_on_level, sum_in_region};
 
 const disc_kernels *disc_kernels_best(void)
 {
-    const disc_kernels *wide = disc_kernels_avx2();
-    return wide ? wide : &disc_kernels_plain;
+    const disc_kernels *widest = disc_kernels_avx512(), *wide = disc_kernels_avx2();
+    return widest ? widest : wide ? wide : &disc_kernels_plain;
 }

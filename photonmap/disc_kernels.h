@@ -1,10 +1,10 @@
-/* disc_kernels.h: the inner loops of an estimate, in plain C and for AVX2: finding a leaf's photons, selecting the
- * nearest, and summing the photons of a disc. Both versions do the same operations on the same numbers, so that their
- * results have the same bits, which tests/photonmap checks. The plain version goes photon by photon: it serves
- * processors without AVX2, and it checks the other version, with which it shares no code. Without the AVX2 version a
- * frame of the Cornell box takes 9 % more CPU time (cornell-box -t 1 --noise 0 --size 160x90 --spp 4 --photons 300000;
- * median of pairs of runs, AMD EPYC).
- * Rests on: Intel, "64 and IA-32 Architectures Optimization Reference Manual", ch. on AVX2.
+/* disc_kernels.h: the inner loops of an estimate, in plain C, for AVX2 and for AVX-512: finding a leaf's photons,
+ * selecting the nearest, and summing the photons of a disc. All versions do the same operations on the same numbers, so
+ * that their results have the same bits, which tests/photonmap checks. The plain version goes photon by photon: it
+ * serves processors without AVX2, and it checks the other versions, with which it shares no code. Without the AVX2
+ * version a frame of the Cornell box takes 9 % more CPU time (cornell-box -t 1 --noise 0 --size 160x90 --spp 4 --photons
+ * 300000; median of pairs of runs, AMD EPYC); perf/README.md tells what AVX-512 brings.
+ * Rests on: Intel, "64 and IA-32 Architectures Optimization Reference Manual", ch. on AVX2 and on AVX-512.
  * Flow: photon_k_nearest, irradiance_estimate -> [here]. Threads: pure but for what the caller owns. */
 #ifndef AFTERGLOW_DISC_KERNELS_H
 #define AFTERGLOW_DISC_KERNELS_H
@@ -32,10 +32,13 @@ typedef struct photon_disc {
     bool has_offsets;      /* photon_disc_sums.offset is wanted; else it need not be right */
 } photon_disc;
 
-enum { DISC_COUNTS = 3 };
+enum { DISC_COUNTS = 3, DISC_SUBTREE_LEVELS_MAX = 4, DISC_SUBTREE_LEAVES_MAX = 1 << DISC_SUBTREE_LEVELS_MAX };
 
 typedef struct disc_kernels {
-    /* Finds the leaves, PHOTON_SUBTREE_LEVELS below a node, whose boxes are within `most`, a squared distance.
+    /* How far above the leaves the subtrees of find_leaves begin. */
+    uint32_t subtree_levels;
+
+    /* Finds the leaves below a node, so many levels above them, whose boxes are within `most`, a squared distance.
      * out_leaves: room for all of them. Returns their number. */
     uint32_t (*find_leaves)(const photon_query *query, photon_subtree subtree, float most, uint32_t *out_leaves);
 
@@ -98,8 +101,9 @@ void photon_found_drop_empty_leaves(photon_found *found);
 
 extern const disc_kernels disc_kernels_plain;
 
-/* Returns NULL where the compiler or the processor does not support AVX2. */
+/* Return NULL where the compiler or the processor does not support these instructions. */
 const disc_kernels *disc_kernels_avx2(void);
+const disc_kernels *disc_kernels_avx512(void); /* F, BW, DQ and VL */
 
 /* Returns the fastest kernels that this processor supports. */
 const disc_kernels *disc_kernels_best(void);

@@ -477,7 +477,8 @@ AVX2 static uint32_t sum_in_region(const photon_disc *disc, const surface_region
 
 const disc_kernels *disc_kernels_avx2(void)
 {
-    static const disc_kernels KERNELS = {find_leaves, collect, count_within, list_between, sum_on_level, sum_in_region};
+    static const disc_kernels KERNELS = {PHOTON_SUBTREE_LEVELS, find_leaves,  collect,      count_within,
+                                         list_between,          sum_on_level, sum_in_region};
     return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("popcnt") ? &KERNELS : NULL;
 }
 

@@ -29,8 +29,9 @@ static void stack_other_sides(photon_query *q, uint32_t node, uint32_t height, f
  * prefetched while others are searched. */
 static void collect(const disc_kernels *kernels, photon_query *q, uint32_t first_leaf, uint32_t wanted, photon_found *f)
 {
-    enum { LEAVES = 4 * PHOTON_SUBTREE_LEAVES };
-    uint32_t leaves[LEAVES], depth = q->tree->depth, height = depth < PHOTON_SUBTREE_LEVELS ? 0 : PHOTON_SUBTREE_LEVELS;
+    enum { LEAVES = 3 * DISC_SUBTREE_LEAVES_MAX };
+    uint32_t leaves[LEAVES], depth = q->tree->depth, levels = kernels->subtree_levels,
+                             height = depth < levels ? 0 : levels;
     photon_subtree next = {photon_lanes_fill(0.0f), (((1u << depth) + first_leaf) >> height) - 1};
     stack_other_sides(q, next.node, height, f->limit);
     for (bool is_left = true; is_left;) {
@@ -43,7 +44,7 @@ static void collect(const disc_kernels *kernels, photon_query *q, uint32_t first
             for (; before < count; before++)
                 photon_block_prefetch(&q->tree->blocks[leaves[before]]);
             is_left = photon_query_next(q, f->limit, height, &next);
-        } while (is_left && count + PHOTON_SUBTREE_LEAVES <= LEAVES);
+        } while (is_left && count + DISC_SUBTREE_LEAVES_MAX <= LEAVES);
         uint32_t done = kernels->collect(q, leaves, count, f);
         for (; done < count; done += kernels->collect(q, leaves + done, count - done, f)) {
             disc_kernels_keep_nearest(kernels, f, wanted); /* each leaf has a photon: they are more than wanted */

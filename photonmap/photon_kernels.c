@@ -71,6 +71,6 @@ const photon_kernels photon_kernels_plain = {find_leaves, meet_plane, descend, s
 
 const photon_kernels *photon_kernels_best(void)
 {
-    const photon_kernels *wide = photon_kernels_avx2();
-    return wide ? wide : &photon_kernels_plain;
+    const photon_kernels *widest = photon_kernels_avx512(), *wide = photon_kernels_avx2();
+    return widest ? widest : wide ? wide : &photon_kernels_plain;
 }

@@ -1,5 +1,5 @@
-/* photon_kernels.h: the inner loops of searches for many points at once, in plain C and for AVX2. Both versions do
- * the same operations on the same numbers, so that their results have the same bits.
+/* photon_kernels.h: the inner loops of searches for many points at once, in plain C, for AVX2 and for AVX-512. All
+ * versions do the same operations on the same numbers, so that their results have the same bits.
  * Rests on: Intel, "64 and IA-32 Architectures Optimization Reference Manual", ch. on AVX2 (gathers, compaction by
  * permutation). Flow: photon_nearest_many, irradiance_cache -> [here]. Threads: pure but for what the caller owns. */
 #ifndef AFTERGLOW_PHOTON_KERNELS_H
@@ -9,7 +9,7 @@
 
 /* Points as columns: x, y, z, and the squared distance within which photons matter to each; negative: none do. */
 typedef struct photon_reach {
-    _Alignas(32) float column[4][PHOTON_LOOKUPS_MAX];
+    _Alignas(64) float column[4][PHOTON_LOOKUPS_MAX];
 } photon_reach;
 
 enum { PHOTON_REACH_SQUARED = 3 };
@@ -44,8 +44,9 @@ typedef struct photon_kernels {
 
 extern const photon_kernels photon_kernels_plain;
 
-/* Returns NULL where the compiler or the processor does not support AVX2. */
+/* Return NULL where the compiler or the processor does not support these instructions. */
 const photon_kernels *photon_kernels_avx2(void);
+const photon_kernels *photon_kernels_avx512(void); /* F, BW, DQ and VL */
 
 /* Returns the fastest kernels that this processor supports. */
 const photon_kernels *photon_kernels_best(void);

@@ -49,7 +49,9 @@ static bool find_other_leaves(const photon_walk *walk, const photon_lookup *look
             break;
         if (from->count > PHOTON_VISITS_MAX)
             return false;
-        walk->kernels->descend(tree, reach, from, to);
+        to->count = 0;
+        if (from->count > 0)
+            walk->kernels->descend(tree, reach, from, to);
         if (level < top) {
             uint32_t sibling = (way >> (depth - 1 - level) ^ 1) - 1;
             uint64_t met = walk->kernels->meet_plane(reach, tree->nodes[(way >> (depth - level)) - 1]);

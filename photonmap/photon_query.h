@@ -37,7 +37,7 @@ typedef struct photon_query {
     uint32_t similar_code, other_code; /* normals, as photons have them, that were last found similar and not */
     bool other_is_behind;              /* that other one is turned by more than 120 degrees */
     uint32_t visits;                   /* on the stack */
-    photon_visit stack[PHOTON_TREE_DEPTH_MAX];
+    photon_visit stack[PHOTON_TREE_DEPTH_MAX + 1]; /* one more, which is written and does not count */
 } photon_query;
 
 #define PHOTON_QUERY_NO_CODE UINT32_MAX
@@ -52,8 +52,9 @@ static inline void photon_query_push(photon_query *q, photon_lanes offset, photo
 {
     photon_lanes far = photon_lanes_replace(offset, from_plane, axis), square = far * far;
     float beyond = square[0] + square[1] + square[2];
-    if (beyond <= most && beyond < INFINITY) /* beyond a plane at infinity there is nothing */
-        q->stack[q->visits++] = (photon_visit){far, beyond, node};
+    /* whether it is within is as good as random: it is always written, but mostly overwritten */
+    q->stack[q->visits] = (photon_visit){far, beyond, node};
+    q->visits += (uint32_t)(beyond <= most) & (uint32_t)(beyond < INFINITY); /* beyond such a plane there is nothing */
 }
 
 /* A part of the tree, and the query's offset from its box. */

@@ -105,6 +105,8 @@ static void check_query(const photon_tree *tree, vec3 at, vec3 normal, float min
     check_k_nearest(&disc_kernels_plain, tree, at, normal, min_cos, radius, wanted, expected, all, found);
     if (disc_kernels_avx2())
         check_k_nearest(disc_kernels_avx2(), tree, at, normal, min_cos, radius, wanted, expected, all, found);
+    if (disc_kernels_avx512())
+        check_k_nearest(disc_kernels_avx512(), tree, at, normal, min_cos, radius, wanted, expected, all, found);
 }
 
 static void searches_find_what_brute_force_finds(void **state)
