@@ -153,7 +153,7 @@ static bool is_whole(FILE *file)
     return !ferror(file) && kept == sizeof told && told == crc;
 }
 
-/* Its planes and words, after the header, of a file that is known to be whole and ours. */
+/* Reads a film's planes and words, after the header, of a file that is known to be whole and ours. */
 static bool read_contents(ag_rendering *r, FILE *file, const checkpoint_header *header)
 {
     film_plane planes[FILM_PLANES_MAX];

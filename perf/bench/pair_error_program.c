@@ -8,7 +8,7 @@
 
 static const double LEFT_OUT = 0.01;
 
-/* Its first three channels, packed; NULL where it cannot be had. */
+/* Returns the picture's first three channels, packed; NULL where it cannot be had. */
 static float *read_colors(const char *path, int *in_out_width, int *in_out_height)
 {
     char message[512] = "";

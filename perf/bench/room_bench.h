@@ -15,10 +15,10 @@ void room_bench_say(void *user, ag_log_level level, const char *message);
  * too, where it may be NULL. Errors: those of the parser and of files. */
 ag_status room_bench_load(run_context *run, const char *path, scene **out_scene);
 
-/* Its 500,000 photons, to be reset. */
+/* Traces the room's 500,000 photons. *out_set is to be reset by the caller. */
 ag_status room_bench_trace(run_context *run, const scene *s, photon_set *out_set);
 
-/* The global map of those: estimates of the 300 nearest within 3.0. Borrows the scene. */
+/* Traces the room's photons and makes their global map: estimates of the 300 nearest within 3.0. Borrows the scene. */
 ag_status room_bench_map(run_context *run, const scene *s, photon_map *out_map);
 
 /* The median of an odd number of values, which are put in order. */

@@ -51,7 +51,7 @@ static void print_view(FILE *file, int gather_samples)
 
 static void print_light(FILE *file)
 {
-    /* Its corners run as the ceiling's do, so it shines down; black, so it only shines. */
+    /* The lamp's corners run as the ceiling's do, so it shines down; it is black, so it only shines. */
     const double low = 0.5 * (ROOM_SIZE - ROOM_LIGHT_SIZE), high = 0.5 * (ROOM_SIZE + ROOM_LIGHT_SIZE);
     const double height = ROOM_LIGHT_HEIGHT;
     const double corner[4][3] = {{low, height, low}, {high, height, low}, {high, height, high}, {low, height, high}};

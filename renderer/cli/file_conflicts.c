@@ -229,7 +229,7 @@ static bool is_noted(const use_list *list, const char *pattern)
     return pattern && strcmp(pattern, "-") != 0 && (!list->has_common || frames_has_placeholder(pattern));
 }
 
-/* There is room for all. */
+/* Notes the files of one frame. The list has room for all of them. */
 static void note_uses(use_list *list, const options *o, const options *one, const output_list *outputs, int frame)
 {
     if (is_noted(list, o->scene))

@@ -281,7 +281,7 @@ int block_rows(const OIIO::ImageInput &input, const OIIO::ImageSpec &spec)
     return !is_apart && static_cast<std::uint64_t>(rows) * spec.scanline_bytes(true) > largest_strip_bytes ? 1 : rows;
 }
 
-/* So many blocks that they are a piece, at least one. */
+/* Returns how many blocks make a piece, at least one. */
 int blocks_of_piece(std::uint64_t block_bytes)
 {
     return static_cast<int>(std::max<std::uint64_t>(piece_bytes / std::max<std::uint64_t>(block_bytes, 1), 1));

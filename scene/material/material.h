@@ -103,8 +103,8 @@ typedef struct material {
     uint32_t grain_texture; /* a colour, SCENE_NO_TEXTURE: none; 2 c - 1 of red and green is the direction to turn along
                                dp/du and dp/dv, or a mesh's own tangent and the one to its left */
 
-    /* It is Lambertian and nothing else, uniform, and nothing tilts its shading normal. Set by scene_add_material. Some
-     * code needs no bsdf then (README.md). */
+    /* The material is Lambertian and nothing else, uniform, and nothing tilts its shading normal. Set by
+     * scene_add_material. Some code needs no bsdf then (README.md). */
     bool is_lambertian;
 } material;
 

@@ -89,7 +89,8 @@ static inline bool texture_image_has_alpha(const texture_image *i)
     return i->alpha_bytes || i->alpha_values || i->stored_alpha.tiles || i->has_tile_alpha;
 }
 
-/* Its alpha as a level, stored or not, where it has one. is_encoded: bytes are decoded as those of colours are. */
+/* The picture's alpha as a level, stored or not, where it has one. is_encoded: bytes are decoded as those of colours
+ * are. */
 static inline texture_level texture_image_alpha(const texture_image *i, bool is_encoded)
 {
     texture_level alpha = i->stored_alpha;

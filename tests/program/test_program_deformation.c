@@ -115,7 +115,7 @@ static void test_translation_is_that_of_a_matrix(void **state)
     }
 }
 
-/* Likewise of curves, flat ones and tubes, also within an object that is moved the other way. */
+/* Curves, flat ones and tubes, deform as they should, also within an object that is moved the other way. */
 static void test_translation_of_curves_is_that_of_a_matrix(void **state)
 {
     (void)state;

@@ -245,7 +245,7 @@ static void cancelling_ends_its_children(void **state)
     run_context_reset(&c.run);
 }
 
-/* Its caller ended before the process could ask to be ended with it: the task is not begun. */
+/* Where the caller has ended before the process could ask to be ended with it, the task is not begun. */
 static void nothing_is_done_for_a_caller_that_is_gone(void **state)
 {
     (void)state;

@@ -295,7 +295,7 @@ static void freed_arrays_are_told(void **state)
     }
 }
 
-/* So are those that the host frees before the first commit. */
+/* Borrowed arrays that the host frees before the first commit are an error, which is told. */
 static void arrays_freed_before_the_commit_are_told(void **state)
 {
     (void)state;

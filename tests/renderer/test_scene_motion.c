@@ -297,7 +297,7 @@ static void mistakes_are_named(void **state)
 /* --- matrices of more than two times --- */
 
 static const double STAYS[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
-/* There and back, of which the two ends say nothing; and the half of the way there, straight on. */
+/* A path there and back, of which the two ends say nothing; and the half of the way there, straight on. */
 static const double THERE_AND_BACK[2 * 16] = {1, 0, 0, 1, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1,
                                               1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
 static const double IN_HALVES[2 * 16] = {1, 0, 0, 0.5, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1,

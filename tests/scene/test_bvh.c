@@ -256,7 +256,7 @@ static int build_without_memory(const char *text)
     return status == AG_OK && scene_intersect(s, ray, INFINITY, &hit) ? THERE : WRONG;
 }
 
-/* It need not be the first of the builders that meets the end of memory. */
+/* Whichever of the builders meets the end of memory, the build says so. */
 static void any_builder_without_memory_is_an_error(void **state)
 {
     (void)state;

@@ -146,7 +146,7 @@ static void empty_channels_are_not_picked(void **state)
 static const float GS[] = {-0.999f, -0.9f, -0.5f, -1e-4f, 0.0f, 1e-4f, 0.3f, 0.85f, 0.99f};
 enum { GS_COUNT = sizeof GS / sizeof *GS };
 
-/* Its integral is 1, and the mean cosine g; by midpoints, denser where it is large. */
+/* The phase function's integral is 1, and the mean cosine g; by midpoints, denser where it is large. */
 static void phase_function_is_normalized(void **state)
 {
     (void)state;

@@ -104,7 +104,7 @@ typedef enum picture_use {
     PICTURE_OPACITY    /* its alpha where it has that, else as above */
 } picture_use;
 
-/* Its texture, multiplied by scale; SCENE_NO_TEXTURE where there is none that can be read. */
+/* Returns the material's texture, multiplied by scale; SCENE_NO_TEXTURE where there is none that can be read. */
 static ag_status add_picture(importer *i, const import_picture *p, picture_use use, float scale, uint32_t *out_texture)
 {
     char message[1024] = "";
