@@ -1,6 +1,7 @@
 /* photon_path.c: see photon_path.h. */
 #include "photon_path.h"
 
+#include "medium/medium_roulette.h"
 #include "photon_arrival.h"
 #include "quarter_octave.h"
 #include "scene_extent.h"
@@ -26,7 +27,8 @@ typedef struct photon_path {
     uint64_t key;
     float weight;    /* how dense such paths would be by power alone, over how dense guide and parts make them */
     float share;     /* of the begun path, that this part has */
-    int scatterings; /* by surfaces and media, but for panes, where they are direct */
+    int scatterings; /* that max_scatterings bounds: by surfaces, but for panes, where they are direct; and by media */
+    int in_media;    /* by media, counted on their own */
     int arrivals;    /* at surfaces, panes too */
     bool is_diffuse; /* has gone on from a surface by its gathered lobes, or from a point in a medium */
 } photon_path;
@@ -185,7 +187,7 @@ static bool begin_path(photon_tracer *t, uint64_t number, photon_path *out_path)
     if (settings->filters_textures)
         ray.cone = (ray_cone){photon_width(s, settings), 0.0f, true};
     rgb flux = rgb_scale(start.flux, (t->trial ? 1.0f : weight) / probability);
-    *out_path = (photon_path){ray, flux, random, key, weight, 1.0f, 0, 0, false};
+    *out_path = (photon_path){ray, flux, random, key, weight, 1.0f, 0, 0, 0, false};
     count_flux(t->out->balance.emitted, out_path->flux);
     return true;
 }
@@ -319,15 +321,34 @@ static bool arrive(photon_tracer *t, photon_path *path, photon_arrival *at)
     return scatter(t, path, at);
 }
 
+/* Whether a path goes on that a medium has scattered once more. No random number is drawn where all paths do. */
+static bool survives_in_medium(energy_balance *balance, photon_path *path)
+{
+    float before = medium_roulette_level(path->in_media), level = medium_roulette_level(++path->in_media);
+    if (level == before)
+        return true;
+    rgb flux = path->flux;
+    if (rng_float(&path->random) >= before / level) {
+        count_flux(balance->lost, flux);
+        return false;
+    }
+    path->flux = rgb_scale(flux, level / before);
+    count_flux(balance->gained, rgb_sub(path->flux, flux));
+    return true;
+}
+
 /* Sends the path on from where a medium has scattered it. Returns false where it ends. */
 static bool scatter_in_medium(photon_tracer *t, photon_path *path, const photon_arrival *at)
 {
-    if (path->scatterings >= t->settings->max_scatterings) {
+    bool is_bounded = t->settings->media_are_bounded;
+    if ((is_bounded && path->scatterings >= t->settings->max_scatterings) || path->in_media == MEDIUM_SCATTERINGS_MAX) {
         count_flux(t->out->balance.truncated, path->flux);
         return false;
     }
+    if (!survives_in_medium(&t->out->balance, path))
+        return false;
     photon_arrival_scatter_in_medium(t->s, at, rng_vec2(&path->random), &path->ray);
-    path->scatterings++;
+    path->scatterings += is_bounded;
     path->is_diffuse = true;
     return true;
 }

@@ -57,11 +57,13 @@ typedef struct photon_set {
 
 typedef struct photon_tracing_settings {
     photon_kind kind;
-    uint32_t wanted;       /* photons to store, > 0 */
-    uint64_t paths;        /* so many are emitted, unless `wanted` photons are stored before; 0: as many as it takes */
-    int max_scatterings;   /* arrivals after more scatterings than this are not stored; >= 0 */
-    bool panes_are_direct; /* light straight through panes (bsdf.h) counts as unscattered: no caustic */
-    bool filters_textures; /* over about the area that a photon stands for, and more behind diffuse vertices */
+    uint32_t wanted;        /* photons to store, > 0 */
+    uint64_t paths;         /* so many are emitted, unless `wanted` photons are stored before; 0: as many as it takes */
+    int max_scatterings;    /* arrivals after more scatterings than this are not stored; >= 0 */
+    bool media_are_bounded; /* scatterings by media count in that, too; else roulette alone ends paths there
+                               (medium_roulette.h) */
+    bool panes_are_direct;  /* light straight through panes (bsdf.h) counts as unscattered: no caustic */
+    bool filters_textures;  /* over about the area that a photon stands for, and more behind diffuse vertices */
     uint64_t seed;
     /* Borrowed; NULL: paths begin by power alone, and every arrival is stored. */
     const emission_guide *guide;    /* where paths begin */

@@ -15,6 +15,7 @@
 #include "render_maps.h"
 #include "render_tiles.h"
 #include "rendering_counts.h"
+#include "settings_table.h"
 #include "split_pilot.h"
 #include "status.h"
 
@@ -76,6 +77,7 @@ static transport make_transport(ag_context *context, const scene *s, const ag_re
                    .wants_groups = aov_has(layout, SUM_GROUPS),
                    .pixel_share = pixel_share(s, settings),
                    .has_lights = rgb_max(s->light_power) > 0.0f,
+                   .media_are_bounded = settings_bound_media(settings),
                    .panes_are_direct = s->has_panes && settings->pane_light == AG_PANE_LIGHT_DIRECT};
     for (uint32_t i = 0; i < s->light_count; i++)
         t.can_meet_lights = t.can_meet_lights || light_can_be_met(&s->lights[i]);

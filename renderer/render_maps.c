@@ -7,6 +7,7 @@
 #include "map_file.h"
 #include "photon_aim.h"
 #include "rays/transmittance.h"
+#include "settings_table.h"
 #include "status.h"
 
 #include <stdlib.h>
@@ -78,6 +79,7 @@ static ag_status trace_after(ag_context *context, const scene *s, const ag_rende
                                        .wanted = (uint32_t)settings->photon_count,
                                        .paths = settings->photon_paths,
                                        .max_scatterings = settings->max_depth - 2,
+                                       .media_are_bounded = settings_bound_media(settings),
                                        .panes_are_direct = settings->pane_light == AG_PANE_LIGHT_DIRECT,
                                        .filters_textures =
                                            settings->texture_filter == AG_TEXTURE_FILTER_ON && s->filters_textures,

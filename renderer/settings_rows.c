@@ -158,14 +158,13 @@ static const setting_row ROWS[] = {
               .section = "Light",
               .help = "scatterings between lamp and eye at most, up to 100 (default: roulette)",
               .manual = "Scatterings between lamp and eye at most, up to 100. By default, and at 100, Russian "
-                        "roulette alone ends the paths; but in media that scatter, 100 bounds them too: light that fog "
-                        "without absorption scatters more often is lost.",
+                        "roulette alone ends the paths; a smaller number bounds scatterings in media too.",
               .is_of_photon_map = true},
      FIELD(max_depth),
      .kind = SETTING_INTEGER,
-     .initial = 100,
+     .initial = DEPTH_BY_ROULETTE,
      .least = 0,
-     .most = 100,
+     .most = DEPTH_BY_ROULETTE,
      .noun = "depth",
      .json = "settings.max_depth",
      .marks = SETTING_OF_PICTURE | SETTING_IN_HEADER},

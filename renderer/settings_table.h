@@ -42,6 +42,15 @@ typedef struct setting_row {
     unsigned marks;
 } setting_row;
 
+/* The max_depth by which no bound of their own is asked for: roulette then ends paths, but that surfaces scatter them
+ * no oftener than this. */
+enum { DEPTH_BY_ROULETTE = 100 };
+/* Whether max_depth bounds scatterings by media too. */
+static inline bool settings_bound_media(const ag_render_settings *settings)
+{
+    return settings->max_depth < DEPTH_BY_ROULETTE;
+}
+
 /* NULL: there are no more. */
 const setting_row *setting_at(size_t index);
 /* All settings at their defaults. */

@@ -166,8 +166,9 @@ bool eye_path_go_on(const transport *t, const vertex *v, bsdf_lobes lobes, float
     if (is_last && !goes_straight)
         return false;
     path->throughput = rgb_mul(path->throughput, next.weight);
+    path->in_media += v->is_in_medium;
     if (path->vertex >= path->roulette_after &&
-        !transport_survives(&path->throughput, sampler_2d(&path->where, SAMPLE_ROULETTE, key).x))
+        !transport_survives(&path->throughput, path->in_media, sampler_2d(&path->where, SAMPLE_ROULETTE, key).x))
         return false;
     path->vertex++;
     if (goes_straight) {

@@ -26,6 +26,7 @@ typedef struct eye_path {
     int vertex_key; /* added to that number where random numbers are drawn */
     int roulette_after; /* the vertex from which on roulette decides whether the path goes on */
     int scatterings;    /* so far; to pass a pane straight may count as none, and then changes no member below */
+    int in_media;       /* those of them by media */
     int first_gathered; /* the number, from 1 on, of the first scattering by a gathered lobe; 0: none */
     vec3 scattered_from, scattered_normal; /* position and vertex_light_normal of the last scattering */
     float scattered_pdf; /* per solid angle; 0: the eye or a smooth lobe, for which no shadow ray can stand */
@@ -39,10 +40,16 @@ eye_path eye_path_begin(const camera_sample *from, int roulette_after, bool want
 /* Returns the number of the vertex by which random numbers are drawn. */
 static inline int eye_path_key(const eye_path *path) { return path->vertex + path->vertex_key; }
 
-/* Returns whether the path has as many scatterings as the settings allow, so that it goes on through panes alone. */
+/* Returns how many more scatterings the settings allow. */
+static inline int eye_path_scatterings_left(const transport *t, const eye_path *path)
+{
+    return t->settings->max_depth - path->scatterings + (t->media_are_bounded ? 0 : path->in_media);
+}
+
+/* Returns whether no more are allowed, so that the path goes on through panes alone. */
 static inline bool eye_path_is_last(const transport *t, const eye_path *path)
 {
-    return path->scatterings >= t->settings->max_depth;
+    return eye_path_scatterings_left(t, path) <= 0 || path->in_media >= MEDIUM_SCATTERINGS_MAX;
 }
 
 /* Returns the random number that picks the lobe by which the path goes on. */

@@ -6,6 +6,7 @@
 #include "integrator/shading.h"
 #include "parallel_for.h"
 #include "rays/transmittance.h"
+#include "settings_table.h"
 #include "status.h"
 
 #include <stdlib.h>
@@ -135,7 +136,7 @@ static void trace_importon(const transport *t, eye_worker *worker, const gather_
         if (!bsdf_sample_direction(&v.scattering, BSDF_ALL, BSDF_RADIANCE, u_lobe, u, &next))
             return;
         throughput = rgb_mul(throughput, next.weight);
-        if (!transport_survives(&throughput, rng_float(&random)))
+        if (!transport_survives(&throughput, 0, rng_float(&random)))
             return;
         if (scatterings > 0 && next.group == BSDF_GATHERED) {
             map_point at = vertex_map_point(t->s, &v);
@@ -222,7 +223,7 @@ static void look(const pilot_job *job, eye_worker *worker, int x, int y, row_ite
                 add_sides(t, &v, out, GATHERED);
             } else {
                 add_sides(t, &v, out, SEEN);
-                gather_points(t, worker, &v, &where, path.vertex, t->settings->max_depth - path.scatterings - 1, out);
+                gather_points(t, worker, &v, &where, path.vertex, eye_path_scatterings_left(t, &path) - 1, out);
             }
         }
         if (!eye_path_go_on(t, &v, BSDF_TRACED, eye_path_u_lobe(&path), 1, &path))
@@ -335,6 +336,7 @@ static ag_status merge_starts(const pilot_job *job, emission_starts *out_starts)
 /* The rows are to be freed by free_rows, on failure too. */
 static ag_status look_over_frame(pilot_job *job, run_context *run, int paths, const ag_render_settings *settings)
 {
+    job->t.media_are_bounded = settings_bound_media(settings);
     job->t.panes_are_direct = job->t.s->has_panes && settings->pane_light == AG_PANE_LIGHT_DIRECT;
     job->t.settings = settings;
     job->aspect = (float)settings->width / (float)settings->height;

@@ -59,8 +59,9 @@ bool gather_path_follow(const transport *t, eye_worker *worker, vertex *v, rng r
 {
     rgb throughput = rgb_gray(1.0f);
     float travelled = 0.0f;
-    int short_bounces = 0;
+    int short_bounces = 0, left = scatterings_left;
     traced_start start = {.is_set = false};
+    int in_media = 0; /* how often media have scattered the ray */
     for (int depth = 0;;) {
         throughput = rgb_mul(throughput, v->transmittance);
         travelled += v->hit.distance;
@@ -77,7 +78,7 @@ bool gather_path_follow(const transport *t, eye_worker *worker, vertex *v, rng r
         throughput = rgb_scale(throughput, 1.0f / (lobes == BSDF_GATHERED ? gathered_share : 1.0f - gathered_share));
         if (lobes == BSDF_GATHERED) {
             if (is_far) {
-                end_at(t, v, scatterings_left - depth, rgb_mul(first, throughput), u_lobe, out_end, out_weight);
+                end_at(t, v, left, rgb_mul(first, throughput), u_lobe, out_end, out_weight);
                 return true;
             }
             /* an estimate is blurred over about that distance, which is too coarse so near */
@@ -88,7 +89,9 @@ bool gather_path_follow(const transport *t, eye_worker *worker, vertex *v, rng r
             short_bounces++;
             start.is_set = false;
         }
-        bool is_last = depth + 1 == scatterings_left;
+        bool counts = !v->is_in_medium || t->media_are_bounded;
+        in_media += v->is_in_medium;
+        bool is_last = (counts && left == 1) || in_media == MEDIUM_SCATTERINGS_MAX;
         bool is_traced = lobes == BSDF_TRACED && (v->is_in_medium || start.is_set);
         if (is_traced && bsdf_is_sampled_from_light(&v->scattering, BSDF_TRACED)) {
             float u_pick = rng_float(&random);
@@ -100,11 +103,13 @@ bool gather_path_follow(const transport *t, eye_worker *worker, vertex *v, rng r
         if (!bsdf_sample_direction(&v->scattering, lobes, BSDF_RADIANCE, u_lobe, u, &next))
             return false;
         throughput = rgb_mul(throughput, next.weight);
-        if ((depth >= ROULETTE_AFTER || lobes == BSDF_GATHERED) && !transport_survives(&throughput, rng_float(&random)))
+        if ((depth >= ROULETTE_AFTER || lobes == BSDF_GATHERED) &&
+            !transport_survives(&throughput, in_media, rng_float(&random)))
             return false;
         bool goes_straight = transport_is_open_pane(t, v) && next.is_straight;
         depth += !goes_straight;
-        if (depth == scatterings_left)
+        left -= counts && !goes_straight;
+        if (left == 0 || (v->is_in_medium && is_last))
             return false;
         scene_ray ray = goes_straight ? vertex_ray_straight(v) : transport_scattered_ray(t, v, next.direction, true);
         ray.skips_uv = true;
@@ -153,7 +158,7 @@ bool gather_path_bounce(const transport *t, eye_worker *worker, rng random, floa
     *in_out_known = rgb_add(*in_out_known, rgb_mul(throughput, local));
     int left = in_out_end->scatterings_left - 1;
     vec2 u = rng_vec2(&random);
-    if (left == 0 || !transport_survives(&throughput, rng_float(&random)) ||
+    if (left == 0 || !transport_survives(&throughput, 0, rng_float(&random)) ||
         !bsdf_sample_direction(&v.scattering, BSDF_GATHERED, BSDF_RADIANCE, 0.0f, u, &next))
         return false;
     scene_ray ray = transport_scattered_ray(t, &v, next.direction, false);

@@ -76,7 +76,7 @@ static void gather_light(const transport *t, eye_worker *worker, const vertex *v
                               .path_vertex = key,
                               .sample = from->number,
                               .is_first = path->scatterings == 0,
-                              .scatterings_left = t->settings->max_depth - path->scatterings,
+                              .scatterings_left = eye_path_scatterings_left(t, path),
                               .count = rays.count,
                               .throughput = rgb_scale(path->throughput, path->share / rays.probability),
                               .share = path->share};
@@ -128,7 +128,7 @@ static diffuse_light diffuse_radiance(const transport *t, eye_worker *worker, co
                                       const camera_sample *from, const eye_path *path, eye_sample *sample,
                                       rgb *by_group)
 {
-    int scatterings_left = t->settings->max_depth - path->scatterings;
+    int scatterings_left = eye_path_scatterings_left(t, path);
     bool is_whole = t->settings->only == AG_ONLY_ALL;
     rgb throughput = path->throughput;
     diffuse_light sum = {rgb_gray(0.0f), rgb_gray(0.0f), rgb_gray(0.0f), rgb_gray(0.0f)};

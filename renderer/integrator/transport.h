@@ -13,6 +13,7 @@
 #include "integrator/gather_batch.h"
 #include "integrator/sampler.h"
 #include "integrator/vertex.h"
+#include "medium/medium_roulette.h"
 
 typedef struct transport {
     const scene *s;
@@ -29,6 +30,7 @@ typedef struct transport {
     bool wants_groups;         /* light by the groups of its lamps */
     bool has_lights;           /* there are lights with power */
     bool can_meet_lights;      /* there are area or infinite lights, which scattered rays find */
+    bool media_are_bounded;    /* max_depth bounds scatterings by media too (settings_bound_media) */
     bool panes_are_direct;     /* there are panes, and light straight through them is direct light (bsdf.h) */
     float pixel_share;         /* the share of a pixel that textures are filtered over for a sample; 0: they are not */
     float gather_min_distance; /* a gather ray that hits nearer than this does not use the cache, scene units */
@@ -115,11 +117,12 @@ static inline ray_cone transport_gather_cone(const vertex *v)
     return ray_cone_is_wide(c) ? (ray_cone){fabsf(c->width), RAY_CONE_DIFFUSE_SPREAD, true} : *c;
 }
 
-/* Roulette: returns whether a path with this throughput goes on. u: a random number in [0, 1). The throughput of a
- * survivor is divided by the probability to survive. */
-static inline bool transport_survives(rgb *in_out_throughput, float u)
+/* Roulette: returns whether a path with this throughput goes on. in_media: how often media have scattered the path
+ * (medium_roulette_level). u: a random number in [0, 1). The throughput of a survivor is divided by the probability to
+ * survive. */
+static inline bool transport_survives(rgb *in_out_throughput, int in_media, float u)
 {
-    float survival = fminf(1.0f, rgb_max(*in_out_throughput));
+    float survival = fminf(1.0f, rgb_max(*in_out_throughput) / medium_roulette_level(in_media));
     if (u >= survival)
         return false;
     *in_out_throughput = rgb_scale(*in_out_throughput, 1.0f / survival);

@@ -156,6 +156,32 @@ static void a_closed_sphere_stores_flux_over_one_minus_rho(void **state)
     test_run_reset(&r);
 }
 
+/* All light of a lamp within a thick ball of fog that absorbs nothing leaves it, most of it after more than a hundred
+ * scatterings, and arrives at the wall. */
+static void thick_fog_keeps_no_light(void **state)
+{
+    (void)state;
+    test_run r;
+    test_run_init(&r, 2);
+    scene *s = test_scene_create(
+        &r,
+        "MakeNamedMedium \"fog\" \"string type\" \"homogeneous\" \"rgb sigma_s\" [20 20 20] \"rgb sigma_a\" [0 0 0]\n"
+        "MediumInterface \"\" \"fog\" LightSource \"point\" \"rgb I\" [1 2 3]\n"
+        "MediumInterface \"fog\" \"\" Material \"interface\" Shape \"sphere\" MediumInterface \"\" \"\"\n"
+        "Material \"diffuse\" \"rgb reflectance\" [0.5 0.5 0.5] Shape \"sphere\" \"float radius\" 2\n");
+    photon_set set = trace(&r, s, PHOTON_GLOBAL, 20000 / FEWER, 0);
+    expect_balance(&set);
+    for (int c = 0; c < 3; c++) {
+        assert_relative(set.balance.arrived[c], set.balance.emitted[c], 0.03 * WIDER);
+        assert_relative(set.balance.truncated[c], set.balance.arrived[c], 1e-6); /* at the wall */
+        assert_true(set.balance.gained[c] > 0.1 * set.balance.emitted[c]);
+    }
+    assert_true(set.rays > 100 * set.emitted_paths);
+    photon_set_reset(&set);
+    scene_destroy(s);
+    test_run_reset(&r);
+}
+
 /* A lamp in the middle of a sphere full of a medium: what of its light arrives at the wall, and of what the wall sends
  * on; the mean of e^-sd over the chords d, of density d / (2 R^2). A ball within, of the same medium, is not to be
  * felt. */
@@ -471,6 +497,7 @@ int main(void)
         cmocka_unit_test(energy_balances_in_a_room_of_everything),
         cmocka_unit_test(a_closed_sphere_stores_flux_over_one_minus_rho),
         cmocka_unit_test(media_take_their_share),
+        cmocka_unit_test(thick_fog_keeps_no_light),
         cmocka_unit_test(light_from_afar_comes_through_what_is_outside),
         cmocka_unit_test(depth_limits_what_is_stored),
         cmocka_unit_test(any_number_of_threads_traces_the_same_photons),

@@ -26,6 +26,22 @@ static void test_furnace(void **state)
         }
 }
 
+/* Neither does it where light is scattered hundreds of times: across the ball are 40 and 400 mean free paths. */
+static void test_thick_furnace(void **state)
+{
+    (void)state;
+    const agreement_means white = agreement_uniform(1.0, 1.0, 1.0);
+    static const char *const THICK[] = {"sigma_s\" [20 20 20]", "sigma_s\" [200 200 200]"};
+    for (int i = 0; i < 2; i++)
+        for (int k = 0; k < INTEGRATOR_COUNT; k++) {
+            const char *scene = SCENE_WITH("fog_furnace.pbrt", "sigma_s\" [1 2 3]", THICK[i], "g\" 0.4", "g\" 0");
+            char what[64];
+            snprintf(what, sizeof what, "furnace, %s, %s", THICK[i], INTEGRATORS[k]);
+            agreement_means found = agreement_render(scene, ARGUMENTS(INTEGRATORS[k], "--spp=8", "--photons=1000"));
+            expect_agreement(what, &found, &white, (agreement_bounds){0.0, i == 0 ? 0.005 : 0.008, 0.03});
+        }
+}
+
 /* Eye and fog in a ball that shines by 1 and reflects a half: of that is 2 everywhere. */
 static void test_shining_wall(void **state)
 {
@@ -151,6 +167,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         TEST_IN_FOLDER(test_furnace),
+        TEST_IN_FOLDER(test_thick_furnace),
         TEST_IN_FOLDER(test_shining_wall),
         TEST_IN_FOLDER(test_slab_scatters_once),
         TEST_IN_FOLDER(test_direct_light_is_what_is_not_scattered),

@@ -59,7 +59,7 @@ static void roulette(void **state)
         mean_sum sum = {0};
         for (uint32_t i = 0; i < SAMPLES; i++) {
             rgb throughput = BEFORE[k];
-            bool survives = transport_survives(&throughput, rng_float(&random));
+            bool survives = transport_survives(&throughput, 0, rng_float(&random));
             assert_true(survives || rgb_max(BEFORE[k]) < 1.0f);
             assert_true(!survives || rgb_max(throughput) >= 0.999f);
             mean_add(&sum, survives ? (double)throughput.r : 0.0);
@@ -67,7 +67,37 @@ static void roulette(void **state)
         assert_mean(&sum, (double)BEFORE[k].r, 1e-5);
     }
     rgb black = rgb_gray(0.0f);
-    assert_false(transport_survives(&black, 0.0f));
+    assert_false(transport_survives(&black, 0, 0.0f));
+}
+
+/* Behind so many scatterings by media that roulette has begun, the mean stays, too: what nothing absorbs is carried on
+ * by fewer paths, and what media absorb by no more than that. */
+static void roulette_in_media(void **state)
+{
+    (void)state;
+    static const struct {
+        float albedo, most; /* most: that a path carries at the end */
+    } MEDIA[] = {{1.0f, 4.01f}, {0.998f, 4.01f}};
+    enum { SCATTERINGS = 400, PATHS = 40000 };
+    rng random = test_random(2);
+    for (size_t k = 0; k < sizeof MEDIA / sizeof *MEDIA; k++) {
+        mean_sum sum = {0};
+        int survivors = 0;
+        for (int i = 0; i < PATHS; i++) {
+            rgb throughput = rgb_gray(1.0f);
+            bool survives = true;
+            for (int n = 1; survives && n <= SCATTERINGS; n++) {
+                throughput = rgb_scale(throughput, MEDIA[k].albedo);
+                survives = transport_survives(&throughput, n, rng_float(&random));
+            }
+            assert_true(!survives || throughput.r <= MEDIA[k].most);
+            survivors += survives;
+            mean_add(&sum, survives ? (double)throughput.r : 0.0);
+        }
+        double expected = pow((double)MEDIA[k].albedo, SCATTERINGS);
+        assert_mean(&sum, expected, 1e-4);
+        assert_true(survivors < PATHS * expected / 3.6);
+    }
 }
 
 static void lamps_shine_on_their_side(void **state)
@@ -138,6 +168,7 @@ int main(void)
                                        cmocka_unit_test(absorption),
                                        cmocka_unit_test(panes),
                                        cmocka_unit_test(roulette),
+                                       cmocka_unit_test(roulette_in_media),
                                        cmocka_unit_test(lamps_shine_on_their_side),
                                        cmocka_unit_test(caustics)};
     return cmocka_run_group_tests(tests, NULL, NULL);
