@@ -148,20 +148,29 @@ static bool is_all_panes(const scene *s, uint32_t material_index)
     return pane_may_be_of(s, material_index) || slab_faces_share(s, material_index) > SLAB_SHARE;
 }
 
-static void warn_of_light_behind_glass(const struct ag_rendering *r)
+/* Warns of such light that is missing, if any is; returns whether it did. Media scatter none of it in either
+ * integrator, since no shadow ray from within finds its way through the glass. */
+static bool warn_of_light_behind_glass(const struct ag_rendering *r)
 {
     const scene *s = r->s;
-    if (integrator_of(r->settings.integrator)->has_photon_map || !has_lights_without_extent(s))
-        return;
+    bool is_on_surfaces = integrator_of(r->settings.integrator)->has_photon_map, has_fog = s->has_scattering_media;
+    if ((is_on_surfaces && !has_fog) || !has_lights_without_extent(s))
+        return false;
     for (uint32_t i = 0; i < s->shape_count; i++) {
         uint32_t material_index = s->shapes[i].material_index;
         if (!material_is_clear_glass(s, material_index) || (r->t.panes_are_direct && is_all_panes(s, material_index)))
             continue;
-        log_once(r->context->log, AG_LOG_WARNING, "light behind glass",
-                 "light of suns, points and spots that comes by way of smooth glass is missing: path tracing does not "
-                 "find it, the photon map does");
-        return;
+        const char *text =
+            is_on_surfaces ? "light of suns, points and spots that comes by way of smooth glass is missing where media "
+                             "scatter it: neither integrator finds it there"
+            : has_fog      ? "light of suns, points and spots that comes by way of smooth glass is missing: path "
+                             "tracing does not find it, the photon map does on surfaces, but not where media scatter it"
+                           : "light of suns, points and spots that comes by way of smooth glass is missing: path "
+                             "tracing does not find it, the photon map does";
+        log_once(r->context->log, AG_LOG_WARNING, "light behind glass", "%s", text);
+        return true;
     }
+    return false;
 }
 
 void odd_scene_warn(const struct ag_rendering *r)
@@ -174,7 +183,7 @@ void odd_scene_warn(const struct ag_rendering *r)
         log_once(log, AG_LOG_WARNING, "odd scene", "the scene has no light that emits: the picture is black");
         return;
     }
-    warn_of_light_behind_glass(r);
+    bool is_light_missing = warn_of_light_behind_glass(r);
     if (!is_whole || r->settings.only != AG_ONLY_ALL || film_count_samples(film).least == 0)
         return;
     if (r->camera_rays > 0 && r->camera_rays_met == 0) {
@@ -185,7 +194,9 @@ void odd_scene_warn(const struct ag_rendering *r)
     brightness_read(film, &b);
     double scale = noise_shown_scale(&r->settings);
     double bright_part = scale * brightness_above(&b, FEW), middle = scale * brightness_above(&b, HALF);
-    if ((double)(b.all - b.black) <= FEW * (double)b.all && is_inside_solid(s))
+    if (b.black == b.all && is_light_missing)
+        log_once(log, AG_LOG_WARNING, "odd scene", "the picture is black: no other light comes to what is in view");
+    else if ((double)(b.all - b.black) <= FEW * (double)b.all && is_inside_solid(s))
         log_once(log, AG_LOG_WARNING, "odd scene",
                  "the camera is inside of a solid: it meets the inner side of a surface in every direction, and no "
                  "light comes there");

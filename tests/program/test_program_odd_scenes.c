@@ -67,6 +67,36 @@ static void test_all_black(void **state)
                    "--tile=1/2", NULL);
 }
 
+/* A ball of glass full of fog, in the sun: no shadow ray leaves the fog through the glass, and no message says that no
+ * light comes there. A fog that is told of and not used is none. */
+static void test_sun_on_murky_glass(void **state)
+{
+    (void)state;
+    static const char *const FOG = "MakeNamedMedium \"fog\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [0 0 0]\n",
+                             *const SUN = "LightSource \"distant\" \"point3 from\" [0 1 0] \"point3 to\" [0 0 0]\n";
+    static const struct {
+        const char *inside;
+        int with_fog; /* warnings that tell of fog, by both integrators together */
+    } BALLS[] = {{"MediumInterface \"fog\" \"\"\n", 2}, {"", 0}};
+    for (size_t i = 0; i < sizeof BALLS / sizeof *BALLS; i++) {
+        char text[1024];
+        int with_fog = 0;
+        snprintf(text, sizeof text, CAMERA "%s%s%sMaterial \"dielectric\"\n" BALL, FOG, SUN, BALLS[i].inside);
+        for (int k = 0; k < 2; k++) {
+            bool is_map = k == 0, is_told = !is_map || BALLS[i].with_fog > 0;
+            program_run run =
+                RUN(QUICK, is_map ? "--integrator=photonmap" : "--integrator=path", write_text("a.pbrt", text));
+            expect_exit(&run, 0);
+            with_fog += count_of(run.err, "media scatter it");
+            assert_int_equal(count_of(run.err, "by way of smooth glass is missing"), is_told);
+            assert_int_equal(count_of(run.err, "black: no other light comes to what is in view"), is_told);
+            assert_int_equal(count_of(run.err, "black: no light comes to what is in view"), !is_told);
+            program_run_reset(&run);
+        }
+        assert_int_equal(with_fog, BALLS[i].with_fog);
+    }
+}
+
 /* A panel behind the eye whose faces were turned round, and one whose faces are right. */
 static void test_panel_turned_round(void **state)
 {
@@ -137,8 +167,13 @@ static void test_scale(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        TEST_IN_FOLDER(test_no_light),           TEST_IN_FOLDER(test_nothing_in_view), TEST_IN_FOLDER(test_all_black),
-        TEST_IN_FOLDER(test_panel_turned_round), TEST_IN_FOLDER(test_inside_solid),    TEST_IN_FOLDER(test_scale),
+        TEST_IN_FOLDER(test_no_light),
+        TEST_IN_FOLDER(test_nothing_in_view),
+        TEST_IN_FOLDER(test_all_black),
+        TEST_IN_FOLDER(test_sun_on_murky_glass),
+        TEST_IN_FOLDER(test_panel_turned_round),
+        TEST_IN_FOLDER(test_inside_solid),
+        TEST_IN_FOLDER(test_scale),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
