@@ -441,6 +441,23 @@ void scene_restore_before(const scene *s)
         bvh_point_at(s->before->bvh, s->before);
 }
 
+static bool scatters(const scene *s, uint32_t medium_index)
+{
+    return medium_index < s->medium_count && medium_scatters(&s->media[medium_index]);
+}
+
+/* Whether rays may come into a medium that scatters: the eye, a lamp or a shape is in it. A medium that the file tells
+ * of and nothing uses makes no difference. */
+static bool has_rays_in_scattering_media(const scene *s)
+{
+    bool any = scatters(s, s->camera_medium);
+    for (uint32_t i = 0; i < s->light_count; i++)
+        any = any || (s->lights[i].kind != LIGHT_AREA && scatters(s, s->lights[i].medium));
+    for (uint32_t i = 0; i < s->shape_count; i++)
+        any = any || scatters(s, s->shapes[i].medium_inside) || scatters(s, s->shapes[i].medium_outside);
+    return any;
+}
+
 ag_status scene_commit(scene *s, run_context *run, const char *isa)
 {
     ag_status status = s->before ? share_surfaces(s) : AG_OK;
@@ -451,8 +468,7 @@ ag_status scene_commit(scene *s, run_context *run, const char *isa)
         s->has_interfaces = s->has_interfaces || material_may_be_interface(s, s->shapes[i].material_index);
         s->has_panes = s->has_panes || pane_may_be_of(s, s->shapes[i].material_index);
     }
-    for (uint32_t i = 0; i < s->medium_count; i++)
-        s->has_scattering_media = s->has_scattering_media || medium_scatters(&s->media[i]);
+    s->has_scattering_media = has_rays_in_scattering_media(s);
     if (status == AG_OK)
         status = list_object_shapes(s);
     if (status == AG_OK)

@@ -93,7 +93,7 @@ typedef struct scene {
     uint32_t *infinite_lights; /* [infinite_light_count], indices of those of kind LIGHT_INFINITE */
     uint32_t infinite_light_count;
     bool filters_textures;     /* any of them: see material_mips.h */
-    bool has_scattering_media; /* any medium scatters light: see transmittance_travel */
+    bool has_scattering_media; /* eye, lamps or shapes are in media that scatter: see transmittance_travel */
     bool has_interfaces;       /* any shape that rays may pass unbent: see transmittance.h */
     bool has_panes;            /* any shape that lets light straight through: see pane.h, slab_faces.h */
     /* Data for picking lights: see light_pick.c. */

@@ -235,6 +235,36 @@ static void bsdf_in_a_medium_is_the_phase_function(void **state)
     }
 }
 
+/* A medium counts where something is in it, not where the file merely tells of it. */
+static void media_that_are_not_used(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *world;
+        bool is_used;
+    } SCENES[] = {
+        {"Shape \"sphere\"\n", false},
+        {"MediumInterface \"tea\" \"\" Shape \"sphere\"\n", false},
+        {"MediumInterface \"fog\" \"\" Shape \"sphere\"\n", true},
+        {"MediumInterface \"\" \"fog\" Material \"interface\" Shape \"sphere\"\n", true},
+        {"MediumInterface \"\" \"fog\" LightSource \"point\" MediumInterface \"\" \"\" Shape \"sphere\"\n", true},
+    };
+    for (size_t i = 0; i < sizeof SCENES / sizeof *SCENES; i++) {
+        char text[1024];
+        snprintf(text, sizeof text,
+                 "MakeNamedMedium \"fog\" \"string type\" \"homogeneous\" \"rgb sigma_s\" [1 1 1]\n"
+                 "MakeNamedMedium \"tea\" \"string type\" \"homogeneous\" \"rgb sigma_s\" [0 0 0]\n%s",
+                 SCENES[i].world);
+        test_run r;
+        test_run_init(&r, 1);
+        scene *s = test_scene_create(&r, text);
+        assert_int_equal(s->medium_count, 2);
+        assert_int_equal(s->has_scattering_media, SCENES[i].is_used);
+        scene_destroy(s);
+        test_run_reset(&r);
+    }
+}
+
 /* A ray through a ball of fog in another one, between walls: it ends in the fog or at the wall, as often as it
  * should, on its line, and knows the medium. */
 static void rays_travel_across_interfaces(void **state)
@@ -290,6 +320,7 @@ int main(void)
         cmocka_unit_test(phase_function_is_normalized),
         cmocka_unit_test(phase_function_is_sampled_by_its_density),
         cmocka_unit_test(bsdf_in_a_medium_is_the_phase_function),
+        cmocka_unit_test(media_that_are_not_used),
         cmocka_unit_test(rays_travel_across_interfaces),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
