@@ -148,7 +148,7 @@ static void list_channels(channel_list *list, const aov_layout *layout)
 /* The sums that a channel is read from, a bit each; and what else the film keeps for it. */
 static uint32_t note_needs(const film_channel *channel, aov_layout *layout)
 {
-    const uint32_t sum = 1u << channel->sum, hits = 1u << SUM_ALPHA;
+    const uint32_t sum = 1u << channel->sum, hits = 1u << SUM_HITS;
     switch (channel->source) {
     case CHANNEL_BEAUTY:
     case CHANNEL_COLOR:

@@ -14,13 +14,14 @@
  * through the photon map. */
 #define FILM_SUM_LIST(X, OF_HIT)                                                                                       \
     X(SUM_RADIANCE, 3, false)                                                                                          \
-    X(SUM_ALPHA, 1, true) /* the ray met something */                                                                  \
+    X(SUM_ALPHA, 1, false) /* how much of the background is hidden: by a surface, or by media on the ray's way */      \
+    X(SUM_HITS, 1, true)   /* the ray met a surface */                                                                 \
     X(SUM_PARTS, 3 * LIGHT_PART_COUNT, false)                                                                          \
     X(SUM_GROUPS, 0, false)                                                                                            \
     FIRST_HIT_LIST(OF_HIT)                                                                                             \
     X(SUM_SQUARES, 3, false)       /* squares of samples as the film develops them */                                  \
     X(SUM_DEVELOPED, 3, false)     /* these samples themselves */                                                      \
-    X(SUM_HIT_SQUARES, 3, false)   /* squares of samples that met something: pbrt's Variance */                        \
+    X(SUM_HIT_SQUARES, 3, false)   /* squares of samples that met a surface: pbrt's Variance */                        \
     X(SUM_HIT_DEVELOPED, 3, false) /* these samples themselves */
 
 typedef enum film_sum {
@@ -37,7 +38,7 @@ typedef enum channel_source {
     CHANNEL_BEAUTY,    /* component of the picture itself */
     CHANNEL_COLOR,     /* a radiance: component of its mean, developed as the beauty */
     CHANNEL_MEAN,      /* over all samples */
-    CHANNEL_HIT_MEAN,  /* over those that met something */
+    CHANNEL_HIT_MEAN,  /* over those that met a surface */
     CHANNEL_DIRECTION, /* normalised */
     CHANNEL_ABSOLUTE,  /* the hit mean's absolute value */
     CHANNEL_VARIANCE,

@@ -46,6 +46,7 @@ typedef struct sample_layers {
     rgb parts[LIGHT_PART_COUNT];
     rgb sky; /* of the part DIRECT, from infinite lights */
     rgb groups[LIGHT_GROUPS_MAX + 1];
+    float alpha; /* the share of the background that is hidden, [0, 1]; right on average where media scatter */
     first_hit first;
 } sample_layers;
 

@@ -259,11 +259,13 @@ static void add_layers(ag_film *film, size_t pixel, double *sums, const eye_samp
         add_rgb(sums + offset[SUM_PARTS] + 3 * i, l->parts[i]);
     for (int i = 0; aov_has(layout, SUM_GROUPS) && i <= layout->group_count; i++)
         add_rgb(sums + offset[SUM_GROUPS] + 3 * i, l->groups[i]);
+    if (aov_has(layout, SUM_ALPHA))
+        sums[offset[SUM_ALPHA]] += (double)l->alpha;
     if (!first->is_hit)
         return;
 
-    if (aov_has(layout, SUM_ALPHA))
-        sums[offset[SUM_ALPHA]] += 1.0;
+    if (aov_has(layout, SUM_HITS))
+        sums[offset[SUM_HITS]] += 1.0;
     add_first_hit(layout, sums, first);
     if (aov_has(layout, SUM_HIT_SQUARES))
         add_squares(film, sums + offset[SUM_HIT_SQUARES], sums + offset[SUM_HIT_DEVELOPED], sample->radiance);
@@ -323,16 +325,16 @@ static void read_mean(const ag_film *film, size_t pixel, int offset, int count, 
     pixel_filter_resolve(&film->filter, &sum, out);
 }
 
-/* The mean over the samples that met something, by their number. Signs are left out: a sum of points by sign
+/* The mean over the samples that met a surface, by their number. Signs are left out: a sum of points by sign
  * would be no point. */
 static double read_hit_mean(const ag_film *film, size_t pixel, int offset)
 {
     const double *sums = film->sums + pixel * sums_of_pixel(film);
-    int alpha = film->layout.offset[SUM_ALPHA];
-    double hits = sums[alpha], value = sums[offset];
+    int of_hits = film->layout.offset[SUM_HITS];
+    double hits = sums[of_hits], value = sums[offset];
     if (film->filter.has_signs) {
         const double *negative = sums + film->layout.sum_count;
-        hits += negative[alpha];
+        hits += negative[of_hits];
         value += negative[offset];
     }
     return hits > 0.0 ? value / hits : 0.0;
@@ -350,7 +352,7 @@ static double read_variance(const ag_film *film, size_t pixel, const film_channe
 {
     bool is_of_hits = channel->sum == SUM_HIT_SQUARES;
     int developed = film->layout.offset[is_of_hits ? SUM_HIT_DEVELOPED : SUM_DEVELOPED];
-    double count = is_of_hits ? read_total(film, pixel, film->layout.offset[SUM_ALPHA]) : (double)film->counts[pixel];
+    double count = is_of_hits ? read_total(film, pixel, film->layout.offset[SUM_HITS]) : (double)film->counts[pixel];
     if (count < 2.0)
         return 0.0;
     double sum = read_total(film, pixel, developed + channel->component), mean = sum / count;

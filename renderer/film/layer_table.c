@@ -9,7 +9,8 @@
 #define VIEW(word, view) .channels = CHANNELS({word, NULL, CHANNEL_VIEW, .component = (view), .is_exact = true})
 
 static const layer_row ROWS[] = {
-    {.info = {AG_LAYER_ALPHA, "A", .about = "the share of the pixel where there is something"},
+    {.info = {AG_LAYER_ALPHA, "A",
+              .about = "how much of the background is hidden: all by a surface, a part by media before the sky"},
      .channels = CHANNELS({"A", NULL, CHANNEL_MEAN, .sum = SUM_ALPHA})},
     /* before the others: where a layer of ours has a channel of the same name, it is pbrt's */
     {.info = {AG_LAYER_GBUFFER, "gbuffer", .about = "what pbrt's film of that name writes", .is_left_out_of_all = true},

@@ -100,8 +100,11 @@ bool eye_path_trace(const transport *t, eye_worker *worker, eye_path *path, eye_
     bool is_met = transport_travel(t, worker, path->ray, path->throughput, u, out);
     path->throughput = rgb_mul(path->throughput, out->transmittance);
     worker->camera_rays_met += is_met && is_camera_ray;
-    if (is_met && is_camera_ray && t->wants_layers)
-        fill_first_hit(t, worker, path, out, &sample->layers->first);
+    if (is_camera_ray && t->wants_layers) {
+        sample->layers->alpha = is_met ? 1.0f : fmaxf(1.0f - rgb_mean(out->transmittance), 0.0f);
+        if (is_met)
+            fill_first_hit(t, worker, path, out, &sample->layers->first);
+    }
     return is_met;
 }
 

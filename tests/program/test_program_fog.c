@@ -105,6 +105,33 @@ static void radiance_of_floor(const void *lost, double x, double y, double out_r
         out_rgb[c] = 0.6 / PI * 10.0 * 1.5 / (d * d * d) * exp(-sigma[c] * (d / 3.0 + v / 2.0));
 }
 
+/* Fog before an empty background hides what it scatters or absorbs, and lets through the rest: at a cosine of 0.6. */
+static void test_alpha(void **state)
+{
+    (void)state;
+    static const char *const MEDIA[] = {"sigma_s\" [0.4 0.2 2]", "sigma_s\" [0 0 0]"};
+    for (int m = 0; m < 2; m++) {
+        double expected = 1.0;
+        for (int c = 0; c < 3; c++)
+            expected -= exp(-(ABSORBED[c] + (m == 0 ? SCATTERED[c] : 0.0)) * 0.5 / 0.6) / 3.0;
+        for (int k = 0; k < INTEGRATOR_COUNT; k++) {
+            const char *scene = SCENE_WITH("fog_slab.pbrt", MEDIA[0], MEDIA[m]);
+            image read = render_image(
+                scene, ARGUMENTS(INTEGRATORS[k], "--aov=A", "--spp=64", "--photons=1000", "--max-depth=1"));
+            assert_int_equal(read.channel_count, 4);
+            double sum = 0.0;
+            int count = read.width * read.height;
+            for (int i = 0; i < count; i++)
+                sum += (double)read.pixels[4 * i + 3] / count;
+            /* without scattering there is no chance in it */
+            double most = m == 0 ? 4.0 * sqrt(expected * (1.0 - expected) / (64.0 * count)) : 1e-5;
+            print_message("alpha of %s by %s: %.6f of %.6f\n", MEDIA[m], INTEGRATORS[k], sum, expected);
+            assert_true(fabs(sum - expected) < most);
+            image_reset(&read);
+        }
+    }
+}
+
 /* The layer of direct light holds what no medium has scattered. */
 static void test_direct_light_is_what_is_not_scattered(void **state)
 {
@@ -170,6 +197,7 @@ int main(void)
         TEST_IN_FOLDER(test_thick_furnace),
         TEST_IN_FOLDER(test_shining_wall),
         TEST_IN_FOLDER(test_slab_scatters_once),
+        TEST_IN_FOLDER(test_alpha),
         TEST_IN_FOLDER(test_direct_light_is_what_is_not_scattered),
         TEST_IN_FOLDER(test_sun_in_a_boundless_fog),
         TEST_IN_FOLDER(test_room_with_a_lamp),

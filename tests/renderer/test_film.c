@@ -130,9 +130,12 @@ static void add(ag_film *film, float radiance, int sign, bool is_hit, float valu
                                       .position = {value, 0.0f, 0.0f},
                                       .geometric_normal = {value, 0.0f, 1.0f},
                                       .object_id = (uint32_t)value,
-                                      .material_id = 7}};
-    if (!is_hit)
+                                      .material_id = 7},
+                            .alpha = 1.0f};
+    if (!is_hit) {
         layers.first = (first_hit){0};
+        layers.alpha = value;
+    }
     film_add(film, 0, &(eye_sample){.radiance = rgb_gray(radiance), .sign = sign, .layers = &layers});
 }
 
@@ -150,10 +153,10 @@ static void test_sums(void **state)
     expect_within("depth of nothing", value_of(film, "Z"), (double)1e10f, 0.0);
     add(film, 1.0f, 1, true, 5.0f);
     add(film, 2.0f, 1, true, 3.0f);
-    add(film, 6.0f, 1, false, 0.0f);
+    add(film, 6.0f, 1, false, 0.25f);
     film_resolve(film);
     expect_within("R", value_of(film, "R"), 6.0, 1e-6);
-    expect_within("A", value_of(film, "A"), 2.0 / 3.0, 1e-6);
+    expect_within("A", value_of(film, "A"), 2.25 / 3.0, 1e-6);
     expect_within("Z", value_of(film, "Z"), 3.0, 0.0);
     expect_within("object", value_of(film, "id.object.V"), 3.0, 0.0);
     expect_within("material", value_of(film, "id.material.V"), 7.0, 0.0);
