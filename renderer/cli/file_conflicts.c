@@ -5,6 +5,7 @@
 
 #include "frame_options.h"
 #include "name_hash.h"
+#include "picture_files.h"
 #include "picture_mark.h"
 
 #include <limits.h>
@@ -175,12 +176,6 @@ static bool is_written_over(const options *o, const ag_scene *scene)
     return has;
 }
 
-/* Whether the picture is not rendered, since all its files are there. */
-static bool is_skipped(const options *o)
-{
-    return o->no_clobber && picture_mark_all_are_complete(o->outfiles, o->outfile_count);
-}
-
 bool file_conflicts_with_scene(const options *o, const ag_scene *scene)
 {
     const options *all = o->of_all_frames;
@@ -190,7 +185,7 @@ bool file_conflicts_with_scene(const options *o, const ag_scene *scene)
     /* The first frame's files are likely to be those of the others. */
     for (int i = 1; all && o->frame == all->frames.numbers[0] && i < all->frames.count && !has; i++) {
         options other;
-        has = frame_options_make(all, all->frames.numbers[i], &other) && !is_skipped(&other) &&
+        has = frame_options_make(all, all->frames.numbers[i], &other) && !picture_files_are_there(&other) &&
               is_written_over(&other, scene);
         frame_options_reset(&other, all->outfile_count);
     }
@@ -251,7 +246,7 @@ static bool add_uses(use_list *list, const options *o, int frame)
         is_whole ? realloc(list->uses, (list->count + (size_t)outputs.count + 2) * sizeof *larger) : NULL;
     if (larger) {
         list->uses = larger;
-        if (!is_skipped(&one))
+        if (!picture_files_are_there(&one))
             note_uses(list, o, &one, &outputs, frame);
     }
     output_list_reset(&outputs);

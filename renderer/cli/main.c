@@ -9,7 +9,7 @@
 #include "options.h"
 #include "page_server.h"
 #include "passes.h"
-#include "picture_mark.h"
+#include "picture_files.h"
 #include "progress.h"
 #include "signals.h"
 #include "standard_files.h"
@@ -83,7 +83,7 @@ static ag_status list_displays(ag_context *context)
 /* Whether the picture is not rendered, since all its files are there; says so. */
 static bool is_there(const options *o)
 {
-    const bool is_skipped = o->no_clobber && picture_mark_all_are_complete(o->outfiles, o->outfile_count);
+    const bool is_skipped = picture_files_are_there(o);
     if (is_skipped && o->verbosity >= 0)
         fprintf(stderr, "afterglow: skipped: '%s' is there\n", o->outfiles[0]);
     return is_skipped;

@@ -8,6 +8,11 @@
 #include <stdio.h>
 #include <sys/stat.h>
 
+bool picture_files_are_there(const options *o)
+{
+    return o->no_clobber && picture_mark_all_are_complete(o->outfiles, o->outfile_count);
+}
+
 static bool is_regular(const char *outfile)
 {
     struct stat info;

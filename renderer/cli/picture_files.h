@@ -5,6 +5,9 @@
 
 #include "options.h"
 
+/* Whether a picture that may not be written over is not rendered, since all its files are there and complete. */
+bool picture_files_are_there(const options *o);
+
 /* Writes the film to each of the options' files. is_last: the picture is complete, so that its marks go. is_view: the
  * film is another view of a picture that was complete before. Files that are not regular take one complete picture
  * alone. A file that cannot be written does not keep the others from being written. in_out_written: for each file,
