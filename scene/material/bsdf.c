@@ -33,7 +33,7 @@ bool bsdf_is_sampled_from_light(const bsdf *b, bsdf_lobes lobes)
 static bool lobe_passes(const bsdf *b, const bsdf_lobe *lobe)
 {
     const bsdf_lobe_type *type = bsdf_lobe_type_of(lobe);
-    return type->passes && type->passes(&b->material);
+    return type->passes && (!type->passes_with || type->passes_with(&b->material));
 }
 
 bool bsdf_has_many_ways(const bsdf *b, bsdf_lobes lobes)

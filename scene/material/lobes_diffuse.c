@@ -102,19 +102,13 @@ static bool sample_through(const bsdf *b, bsdf_transport transport, vec3 o, floa
     return sample_cosine(b, true, u, out_local);
 }
 
-static bool passes_always(const material_point *m)
-{
-    (void)m;
-    return true;
-}
-
 static rgb through_albedo(const material_point *m) { return m->diffuse.transmittance; }
 
 const bsdf_lobe_type bsdf_lobe_diffuse_through = {
     .side = LOBE_TRANSMITS,
     .evaluate = evaluate_through,
     .sample_rough = sample_through,
-    .passes = passes_always,
+    .passes = true,
     .albedo = through_albedo,
 };
 

@@ -5,12 +5,6 @@
 #include "material/bsdf_lobe.h"
 #include "material/fresnel.h"
 
-static bool passes_always(const material_point *m)
-{
-    (void)m;
-    return true;
-}
-
 static void evaluate_dielectric(const bsdf *b, bsdf_transport transport, vec3 direction, vec3 o, vec3 i, rgb *out_value,
                                 float *out_pdf)
 {
@@ -79,7 +73,7 @@ const bsdf_lobe_type bsdf_lobe_dielectric = {
     .sample_smooth = mirror_dielectric,
     .reflection_share = dielectric_reflection_share,
     .sample_rough = sample_dielectric,
-    .passes = passes_always,
+    .passes = true,
     .index = glass_index,
 };
 
@@ -102,7 +96,7 @@ const bsdf_lobe_type bsdf_lobe_thin_dielectric = {
     .side = LOBE_BY_FACETS,
     .sample_smooth = mirror_thin_dielectric,
     .reflection_share = thin_dielectric_reflection_share,
-    .passes = passes_always,
+    .passes = true,
 };
 
 static float slab_reflection_share(const bsdf *b, vec3 o)
@@ -132,5 +126,5 @@ const bsdf_lobe_type bsdf_lobe_slab = {
     .side = LOBE_BY_FACETS,
     .sample_smooth = mirror_slab,
     .reflection_share = slab_reflection_share,
-    .passes = passes_always,
+    .passes = true,
 };

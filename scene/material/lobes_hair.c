@@ -15,15 +15,9 @@ static bool sample_hair(const bsdf *b, bsdf_transport transport, vec3 o, float u
     return true;
 }
 
-static bool hair_passes(const material_point *m)
-{
-    (void)m;
-    return true;
-}
-
 const bsdf_lobe_type bsdf_lobe_hair = {
     .side = LOBE_BY_FIBRE,
     .evaluate = evaluate_hair,
     .sample_rough = sample_hair,
-    .passes = hair_passes,
+    .passes = true,
 };

@@ -19,15 +19,9 @@ static bool sample_phase(const bsdf *b, bsdf_transport transport, vec3 o, float 
     return true;
 }
 
-static bool phase_passes(const material_point *m)
-{
-    (void)m;
-    return true;
-}
-
 const bsdf_lobe_type bsdf_lobe_phase = {
     .side = LOBE_BY_MEDIUM,
     .evaluate = evaluate_phase,
     .sample_rough = sample_phase,
-    .passes = phase_passes,
+    .passes = true,
 };

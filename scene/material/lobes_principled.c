@@ -127,7 +127,7 @@ static bool sample_principled(const bsdf *b, bsdf_transport transport, vec3 o, f
     return is_reflection == (out_local->z * o.z > 0.0f); /* else another facet would meet it */
 }
 
-static bool passes(const material_point *m) { return principled_transmits(&m->principled); }
+static bool passes_with(const material_point *m) { return principled_transmits(&m->principled); }
 
 static float index_of(const material_point *m) { return m->principled.ior; }
 
@@ -137,7 +137,8 @@ const bsdf_lobe_type bsdf_lobe_principled = {
     .sample_smooth = mirror_principled,
     .reflection_share = principled_reflection_share,
     .sample_rough = sample_principled,
-    .passes = passes,
+    .passes = true,
+    .passes_with = passes_with,
     .index = index_of,
 };
 
