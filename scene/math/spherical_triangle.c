@@ -79,8 +79,8 @@ static void turn_towards(const double from[3], const double to[3], double cosine
 static double clamp_cosine(double x) { return fmin(fmax(x, -1.0), 1.0); }
 
 /* Sine and cosine of 2 pi u, u in [0, 1], by Taylor series about the nearest quarter turn: right to 1e-15, since
- * cut_cosine takes differences of nearly equal ones. */
-static void sincos_of_turns(double u, double *out_sin, double *out_cos)
+ * cut_cosine takes differences of nearly equal ones; sincos_turns is right to floats alone, in half the steps. */
+static void sincos_turns_double(double u, double *out_sin, double *out_cos)
 {
     const double quarter = floor(u * 4.0 + 0.5), x = (u - quarter * 0.25) * 6.283185307179586477, x2 = x * x;
     double s = 1.0, c = 1.0;
@@ -106,7 +106,7 @@ static double cut_cosine(const double a[3], const double b[3], const double c[3]
     cross(b, c, bc);
     const double cos_side = dot(a, b), scale = sqrt(dot(ba, ba) * dot(bc, bc));
     const double cos_b = dot(ba, bc) / scale, sin_b = fabs(dot(c, ba)) / scale;
-    sincos_of_turns(share * turns, &sin_part, &cos_part);
+    sincos_turns_double(share * turns, &sin_part, &cos_part);
     const double s = sin_part * cos_b - cos_part * sin_b, t = cos_part * cos_b + sin_part * sin_b; /* of part - b */
     const double u = t - cos_b, v = s + sin_b * cos_side;
     const double above = (v * t - u * s) * cos_b - v, below = (v * s + u * t) * sin_b;
