@@ -9,15 +9,11 @@ static const float LED_SHARE = 0.5f;
 /* The share in a caustic map, whose photons come by ways as well that no importon tells of. */
 static const float CAUSTIC_LED_SHARE = 0.2f;
 
-/* Notes at the hit the direction of the ray and, where its cone is wide, the footprint, and widens the cone up to
- * there. */
+/* Notes the direction of the ray, and its cone. */
 static void note_arrival(scene_ray *ray, photon_arrival *at)
 {
     at->arrived = ray->direction;
-    if (ray_cone_is_wide(&ray->cone)) {
-        ray->cone = ray_cone_at(&ray->cone, at->hit.distance);
-        at->hit.footprint = ray_cone_footprint(&ray->cone, ray->direction);
-    }
+    surface_widen_cone(ray, &at->hit);
 }
 
 bool photon_arrival_meet(const scene *s, scene_ray *in_out_ray, uint64_t *in_out_cut, photon_arrival *out,

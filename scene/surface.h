@@ -89,4 +89,14 @@ static inline scene_ray surface_ray(const surface_hit *hit, scene_ray arrived, v
     return next;
 }
 
+/* Widens the cone of a ray, if it has one, up to the point that it has met, on a surface or in a medium, and notes
+ * there the footprint of textures. */
+static inline void surface_widen_cone(scene_ray *ray, surface_hit *hit)
+{
+    if (!ray_cone_is_wide(&ray->cone))
+        return;
+    ray->cone = ray_cone_at(&ray->cone, hit->distance);
+    hit->footprint = ray_cone_footprint(&ray->cone, ray->direction);
+}
+
 #endif

@@ -97,7 +97,7 @@ static void follow_together(gathering *g, gather_rays *r)
         v.is_in_medium = false;
         ray_fan_hit(t->s, fan, i, &v.hit);
         slab_meet(t->s, &v.arrived, &v.hit);
-        vertex_note_footprint(&v);
+        surface_widen_cone(&v.arrived, &v.hit);
         follow(g, r->number[i], r->weight[i], &v);
     }
 }

@@ -23,7 +23,7 @@ bool transport_meet(const transport *t, eye_worker *worker, scene_ray ray, verte
     out_vertex->arrived = ray;
     out_vertex->is_in_medium = false;
     if (is_met)
-        vertex_note_footprint(out_vertex);
+        surface_widen_cone(&out_vertex->arrived, &out_vertex->hit);
     return is_met;
 }
 
@@ -35,7 +35,7 @@ static bool travel(const transport *t, eye_worker *worker, scene_ray ray, rgb ca
     out->is_in_medium = end == RAY_ENDS_IN_MEDIUM;
     if (end == RAY_ENDS_NOWHERE)
         return false;
-    vertex_note_footprint(out);
+    surface_widen_cone(&out->arrived, &out->hit);
     return true;
 }
 

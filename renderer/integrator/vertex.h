@@ -30,15 +30,6 @@ static inline scene_ray vertex_ray(const vertex *v, vec3 direction)
 /* Returns the ray that goes on straight, as if the surface were not there. */
 static inline scene_ray vertex_ray_straight(const vertex *v) { return scene_ray_continue(&v->hit, &v->arrived); }
 
-/* Carries the cone of the ray that has arrived to the vertex, and finds the footprint of textures there. */
-static inline void vertex_note_footprint(vertex *v)
-{
-    if (!ray_cone_is_wide(&v->arrived.cone))
-        return;
-    v->arrived.cone = ray_cone_at(&v->arrived.cone, v->hit.distance);
-    v->hit.footprint = ray_cone_footprint(&v->arrived.cone, v->arrived.direction);
-}
-
 /* Returns the geometric normal on the side that the ray came from, unit. */
 vec3 vertex_facing_normal(const vertex *v);
 
