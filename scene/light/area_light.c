@@ -2,6 +2,7 @@
  * triangles, or by a radiance map.
  * Rests on: Pharr, Jakob, Humphreys, "Physically Based Rendering", 4th ed., 2023, 12.4 and 6.2.4 (the cone of a
  * sphere). Threads: read-only. */
+#include "light/lamp_value.h"
 #include "light/light_type.h"
 #include "light/mesh_light.h"
 #include "light/radiance_map.h"
@@ -24,45 +25,16 @@ static void add_hash(const light *l, hash128 *h)
 
 static ag_status commit(const scene *s, light *l)
 {
-    return light_varies(s, l) && !l->as.area.map ? radiance_map_create(s, l, &l->as.area.map) : AG_OK;
+    return lamp_varies(s, l) && !l->as.area.map ? radiance_map_create(s, l, &l->as.area.map) : AG_OK;
 }
 
 static rgb power(const scene *s, const light *l)
 {
-    rgb mean = rgb_mul(l->as.area.radiance, l->as.area.map ? l->as.area.map->mean : light_sampled_value(s, l, NULL));
+    rgb mean = rgb_mul(l->as.area.radiance, l->as.area.map ? l->as.area.map->mean : lamp_sampled_value(s, l, NULL));
     return rgb_scale(mean, AG_PI * s->shapes[l->as.area.shape_index].area * (l->as.area.two_sided ? 2.0f : 1.0f));
 }
 
 /* --- how bright --- */
-
-rgb light_texture_value(const scene *s, const light *l, const surface_hit *hit)
-{
-    if (l->as.area.radiance_texture == SCENE_NO_TEXTURE)
-        return rgb_gray(1.0f);
-    rgb c = texture_evaluate_rgb(s, l->as.area.radiance_texture, hit);
-    return rgb_make(fmaxf(c.r, 0.0f), fmaxf(c.g, 0.0f), fmaxf(c.b, 0.0f));
-}
-
-bool light_varies(const scene *s, const light *l)
-{
-    const shape *lamp = &s->shapes[l->as.area.shape_index];
-    return l->as.area.radiance_texture != SCENE_NO_TEXTURE ||
-           (lamp->alpha_texture != SCENE_NO_TEXTURE && !shape_is_invisible(lamp));
-}
-
-rgb light_sampled_value(const scene *s, const light *l, const surface_sample *at)
-{
-    const shape *lamp = &s->shapes[l->as.area.shape_index];
-    if (l->as.area.radiance_texture == SCENE_NO_TEXTURE && shape_is_opaque(lamp))
-        return rgb_gray(1.0f);
-    surface_hit hit = {.distance = 0.0f};
-    if (light_varies(s, l))
-        shape_sample_surface(lamp, l->as.area.shape_index, at, &hit);
-    rgb value = light_texture_value(s, l, &hit);
-    if (shape_is_opaque(lamp) || shape_is_invisible(lamp))
-        return value;
-    return rgb_scale(value, alpha_at(s, lamp, &hit));
-}
 
 static rgb emitted_radiance(const scene *s, const light *l, const surface_hit *hit, vec3 direction)
 {
@@ -70,7 +42,7 @@ static rgb emitted_radiance(const scene *s, const light *l, const surface_hit *h
         return rgb_gray(0.0f);
     return l->as.area.radiance_texture == SCENE_NO_TEXTURE
                ? l->as.area.radiance
-               : rgb_mul(l->as.area.radiance, light_texture_value(s, l, hit));
+               : rgb_mul(l->as.area.radiance, lamp_texture_value(s, l, hit));
 }
 
 /* --- towards a point --- */
@@ -158,7 +130,7 @@ static bool sample_from_point(const scene *s, const light *l, vec3 point, vec2 u
     out->direction = vec3_scale(to_lamp, 1.0f / out->distance);
     out->radiance = rgb_gray(0.0f);
     if (l->as.area.two_sided || vec3_dot(at.geometric_normal, out->direction) < 0.0f)
-        out->radiance = rgb_mul(l->as.area.radiance, light_sampled_value(s, l, &at));
+        out->radiance = rgb_mul(l->as.area.radiance, lamp_sampled_value(s, l, &at));
     float cos_lamp = fabsf(vec3_dot(at.geometric_normal, out->direction));
     if (rgb_is_black(out->radiance) || cos_lamp <= 1e-6f)
         return false;
@@ -209,7 +181,7 @@ static bool emit(const scene *s, const light *l, const light_target *target, con
     if (l->as.area.map && !radiance_map_sample(l->as.area.map, u, &u, &density))
         return false;
     surface_sample at = shape_sample_area(lamp, u);
-    rgb radiance = rgb_mul(l->as.area.radiance, light_sampled_value(s, l, &at));
+    rgb radiance = rgb_mul(l->as.area.radiance, lamp_sampled_value(s, l, &at));
     vec3 n = at.geometric_normal;
     if (light_aim_at(target, at.position, 1.0f, numbers->direction, &out->direction, &pdf)) {
         float cosine = vec3_dot(n, out->direction);

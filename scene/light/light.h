@@ -145,21 +145,11 @@ ag_status light_commit(const struct scene *s, light *l);
 bool light_sample_from_point(const struct scene *s, const light *l, vec3 point, vec2 u, light_sample *out_sample);
 
 /* Returns the density with which light_sample_from_point picks the direction from a point to a hit on the light's
- * shape, 1/sr. For lights of kind LIGHT_INFINITE see environment_pdf. */
+ * shape, 1/sr. For lights of kind LIGHT_INFINITE see infinite_light_pdf. */
 float light_pdf_from_point(const struct scene *s, const light *l, vec3 point, const struct surface_hit *hit);
 
 /* Returns the radiance that an area light emits at a point on it in a direction (away from it, unit), W/m^2/sr. */
 rgb light_emitted_radiance(const struct scene *s, const light *l, const struct surface_hit *hit, vec3 direction);
-
-/* Returns the factor by which a texture changes it, >= 0; 1 without a texture. */
-rgb light_texture_value(const struct scene *s, const light *l, const struct surface_hit *hit);
-
-/* Returns whether an area light's radiance varies, by its texture or by its shape's alpha. */
-bool light_varies(const struct scene *s, const light *l);
-/* Returns the share of its radiance that a point sampled on an area light emits: the texture's value, times the shape's
- * alpha there unless the shape is invisible (alpha.h). Rays that meet the lamp have already been tested against alpha.
- * at: read only if the light varies. */
-rgb light_sampled_value(const struct scene *s, const light *l, const struct surface_sample *at);
 
 /* Returns the intensity of a point light in a direction (away from it, unit), W/sr. */
 rgb light_intensity(const light *l, vec3 direction);

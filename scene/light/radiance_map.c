@@ -1,6 +1,7 @@
 /* radiance_map.c: see radiance_map.h. */
 #include "light/radiance_map.h"
 
+#include "light/lamp_value.h"
 #include "scene.h"
 
 #include <stdlib.h>
@@ -20,7 +21,7 @@ static void look(const scene *s, const light *l, double out_sum[3], double out_c
         double turn = k * 0.61803398874989485;
         vec2 u = {((float)k + 0.5f) / LOOKS, float_below_one((float)(turn - floor(turn)))};
         surface_sample at = shape_sample_area(lamp, u);
-        rgb c = light_sampled_value(s, l, &at);
+        rgb c = lamp_sampled_value(s, l, &at);
         /* ellipsoids are not sampled evenly: the weight undoes that */
         double weight = 1.0 / ((double)at.pdf_area * (double)lamp->area);
         uint32_t cell = (uint32_t)(u.y * SIZE) * SIZE + (uint32_t)(u.x * SIZE);

@@ -9,7 +9,7 @@
 
 typedef struct radiance_map {
     distribution_2d picks;
-    rgb mean; /* of light_sampled_value over the shape's area */
+    rgb mean; /* of lamp_sampled_value over the shape's area */
 } radiance_map;
 
 /* Builds the map of an area light that varies, whose shape is committed. Errors: AG_ERROR_MEMORY. */

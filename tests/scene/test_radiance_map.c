@@ -3,6 +3,7 @@
 /* ctest: serial */
 #include "fixtures/light_fixture.h"
 
+#include "light/lamp_value.h"
 #include "light/radiance_map.h"
 
 enum { SAMPLES = 60000 / FEWER };
@@ -63,7 +64,7 @@ static void power_is_that_of_the_mean(void **state)
                 shape_sample_surface(lamp, 0, &at, &hit);
                 assert_close(vec3_length(vec3_sub(hit.position, at.position)), 0.0, 1e-5);
                 assert_close(vec3_dot(hit.geometric_normal, at.geometric_normal), 1.0, 1e-5);
-                mean_add(&value, (double)light_texture_value(s, l, &hit).g / (double)(at.pdf_area * lamp->area),
+                mean_add(&value, (double)lamp_texture_value(s, l, &hit).g / (double)(at.pdf_area * lamp->area),
                          SAMPLES);
             }
             double expected = 2.0 * value.value * PI * (double)lamp->area * (l->as.area.two_sided ? 2.0 : 1.0);
