@@ -1,7 +1,7 @@
 /* direct_lighting.c: see direct_lighting.h. */
 #include "integrator/direct_lighting.h"
 
-#include "light/environment.h"
+#include "light/infinite_light.h"
 #include "math/sampling.h"
 #include "rays/transmittance.h"
 
@@ -100,13 +100,13 @@ rgb direct_light_escaped(const transport *t, vec3 from, vec3 normal, vec3 direct
     for (uint32_t i = 0; i < s->infinite_light_count; i++) {
         uint32_t index = s->infinite_lights[i];
         const light *l = &s->lights[index];
-        rgb radiance = environment_radiance(l, from, direction);
+        rgb radiance = infinite_light_radiance(l, from, direction);
         if (rgb_is_black(radiance))
             continue;
         float weight = 1.0f;
         if (pdf_solid_angle > 0.0f)
             weight = mis_power(scatter_count, pdf_solid_angle, (float)lamp_count,
-                               lamp_factor(t, from, normal, index, direction) * environment_pdf(l, from, direction));
+                               lamp_factor(t, from, normal, index, direction) * infinite_light_pdf(l, from, direction));
         sum = rgb_add(sum, rgb_scale(radiance, weight));
         add_to_group(by_group, l, rgb_scale(radiance, weight));
     }

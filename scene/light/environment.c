@@ -2,7 +2,6 @@
  * Points on pictures are found in double precision: single would blur the pixels of large ones. */
 #include "light/environment.h"
 
-#include "light/portal.h"
 #include "math/angle.h"
 #include "math/sampling.h"
 
@@ -231,6 +230,16 @@ bool environment_sample_whole(const light_directions *d, vec2 u, vec3 *out_direc
     return true;
 }
 
+float environment_whole_pdf(const light_directions *d, vec3 direction)
+{
+    const environment *e = d->picture;
+    uint32_t x, y;
+    if (!e)
+        return 0.25f * AG_INV_PI;
+    environment_pixel_at(e, frame_to_local(&d->world_from_light, direction), &x, &y);
+    return pixel_pdf(e, distribution_2d_probability(&e->picks, x, y), y);
+}
+
 bool environment_sample_whole_numbers(const light_directions *d, vec3 direction, vec2 *out_u)
 {
     const environment *e = d->picture;
@@ -248,34 +257,4 @@ bool environment_sample_whole_numbers(const light_directions *d, vec3 direction,
 rgb environment_integral(const light_directions *d)
 {
     return d->picture ? rgb_mul(d->value, d->picture->integral) : rgb_scale(d->value, 4.0f * AG_PI);
-}
-
-rgb environment_radiance(const light *l, vec3 point, vec3 direction)
-{
-    if (l->as.infinite.portal && !portal_is_crossed(l->as.infinite.portal, point, direction))
-        return rgb_gray(0.0f);
-    return environment_whole_radiance(&l->as.infinite.radiance, direction);
-}
-
-float environment_pdf(const light *l, vec3 point, vec3 direction)
-{
-    const environment *e = l->as.infinite.radiance.picture;
-    uint32_t x, y;
-    if (l->as.infinite.portal)
-        return portal_pdf(l->as.infinite.portal, point, direction);
-    if (!e)
-        return 0.25f * AG_INV_PI;
-    environment_pixel_at(e, frame_to_local(&l->as.infinite.radiance.world_from_light, direction), &x, &y);
-    return pixel_pdf(e, distribution_2d_probability(&e->picks, x, y), y);
-}
-
-bool environment_sample(const light *l, vec3 point, vec2 u, vec3 *out_direction, rgb *out_radiance,
-                        float *out_pdf_solid_angle)
-{
-    if (!l->as.infinite.portal)
-        return environment_sample_whole(&l->as.infinite.radiance, u, out_direction, out_radiance, out_pdf_solid_angle);
-    if (!portal_sample(l->as.infinite.portal, point, u, out_direction, out_pdf_solid_angle))
-        return false;
-    *out_radiance = environment_whole_radiance(&l->as.infinite.radiance, *out_direction);
-    return !rgb_is_black(*out_radiance);
 }

@@ -3,7 +3,7 @@
  * Rests on: Clarberg, "Fast Equal-Area Mapping of the (Hemi)Sphere using SIMD", Journal of Graphics Tools 13(3),
  * 2008 (square pictures); Pharr, Jakob, Humphreys, "Physically Based Rendering", 4th ed., 2023, 12.5 (infinite
  * lights).
- * Flow: pbrt_environments reads pictures; light.c samples; the renderer asks for what rays see that meet nothing.
+ * Flow: pbrt_environments reads pictures; infinite_light, portal and goniometric_light look directions up.
  * Threads: read-only once created. */
 #ifndef AFTERGLOW_ENVIRONMENT_H
 #define AFTERGLOW_ENVIRONMENT_H
@@ -56,22 +56,16 @@ void environment_uv_at(const environment *e, vec3 direction, uint32_t *out_x, ui
  * over it. */
 vec3 environment_direction(const environment *e, uint32_t x, uint32_t y, vec2 within);
 
-/* The following functions are for lights of kind LIGHT_INFINITE, seen from a point of the scene: light with a portal
- * reaches only what sees through the portal. Directions are in world space, unit, towards the light. */
+/* The functions below ignore portals, which infinite_light.h looks at. They serve LIGHT_GONIOMETRIC too: intensity,
+ * W/sr, by directions that leave the light. Directions are in world space, unit, towards an infinite light. */
 
 /* Returns radiance, W/m^2/sr. */
-rgb environment_radiance(const light *l, vec3 point, vec3 direction);
-/* Returns the density with which environment_sample picks the direction, 1/sr. */
-float environment_pdf(const light *l, vec3 point, vec3 direction);
-/* Samples a direction by u in [0,1)^2. Returns false where there is no light from any direction. */
-bool environment_sample(const light *l, vec3 point, vec2 u, vec3 *out_direction, rgb *out_radiance,
-                        float *out_pdf_solid_angle);
-
-/* The functions below ignore portals. They serve LIGHT_GONIOMETRIC too: intensity, W/sr, by directions that leave the
- * light. */
 rgb environment_whole_radiance(const light_directions *d, vec3 direction);
+/* Samples a direction by u in [0,1)^2. Returns false where there is no light from any direction. */
 bool environment_sample_whole(const light_directions *d, vec2 u, vec3 *out_direction, rgb *out_radiance,
                               float *out_pdf_solid_angle);
+/* Returns the density with which environment_sample_whole picks the direction, 1/sr. */
+float environment_whole_pdf(const light_directions *d, vec3 direction);
 /* Finds the numbers in [0,1)^2, up to rounding, for which environment_sample_whole picks a direction. Returns false
  * where it never picks it. */
 bool environment_sample_whole_numbers(const light_directions *d, vec3 direction, vec2 *out_u);

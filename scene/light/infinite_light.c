@@ -1,6 +1,8 @@
-/* infinite_light.c: light from infinitely far away in all directions, from everywhere or through a portal;
- * environment.c has its radiance.
+/* infinite_light.c: see infinite_light.h; and the kind of light: from infinitely far away in all directions, from
+ * everywhere or through a portal. environment.c has its radiance.
  * Rests on: Pharr, Jakob, Humphreys, "Physically Based Rendering", 4th ed., 2023, 12.5. Threads: read-only. */
+#include "light/infinite_light.h"
+
 #include "light/environment.h"
 #include "light/light_type.h"
 #include "light/portal.h"
@@ -37,13 +39,32 @@ static rgb power(const scene *s, const light *l)
                                  : rgb_scale(environment_integral(&l->as.infinite.radiance), disc);
 }
 
+rgb infinite_light_radiance(const light *l, vec3 point, vec3 direction)
+{
+    if (l->as.infinite.portal && !portal_is_crossed(l->as.infinite.portal, point, direction))
+        return rgb_gray(0.0f);
+    return environment_whole_radiance(&l->as.infinite.radiance, direction);
+}
+
+float infinite_light_pdf(const light *l, vec3 point, vec3 direction)
+{
+    return l->as.infinite.portal ? portal_pdf(l->as.infinite.portal, point, direction)
+                                 : environment_whole_pdf(&l->as.infinite.radiance, direction);
+}
+
 static bool sample_from_point(const scene *s, const light *l, vec3 point, vec2 u, light_sample *out)
 {
     (void)s;
     out->is_delta = false;
     out->distance = INFINITY;
     out->shadow_target = point;
-    return environment_sample(l, point, u, &out->direction, &out->radiance, &out->pdf_solid_angle);
+    if (!l->as.infinite.portal)
+        return environment_sample_whole(&l->as.infinite.radiance, u, &out->direction, &out->radiance,
+                                        &out->pdf_solid_angle);
+    if (!portal_sample(l->as.infinite.portal, point, u, &out->direction, &out->pdf_solid_angle))
+        return false;
+    out->radiance = environment_whole_radiance(&l->as.infinite.radiance, out->direction);
+    return !rgb_is_black(out->radiance);
 }
 
 /* Emits from a point in the portal, which is in the light's own medium, with the light that arrives there; window panes

@@ -4,6 +4,7 @@
  * those of points go by intensity. Threads: one. */
 /* ctest: serial */
 #include "fixtures/light_fixture.h"
+#include "light/infinite_light.h"
 
 enum { SAMPLES = 16000 / FEWER };
 
@@ -190,8 +191,8 @@ static double look(const scene *s, vec3 point, vec3 d, rgb *out_radiance)
     const light *l = &s->lights[0];
     *out_radiance = rgb_gray(0.0f);
     if (l->kind == LIGHT_INFINITE) {
-        *out_radiance = environment_radiance(l, point, d);
-        return environment_pdf(l, point, d);
+        *out_radiance = infinite_light_radiance(l, point, d);
+        return infinite_light_pdf(l, point, d);
     }
     surface_hit hit;
     if (l->kind != LIGHT_AREA || !scene_intersect(s, scene_ray_make(point, d), INFINITY, &hit) ||
