@@ -5,6 +5,7 @@
 #define _POSIX_C_SOURCE 200809L
 #include "film/adaptive.h"
 #include "film/film_copy.h"
+#include "film/splitting.h"
 #include "floating_point.h"
 #include "integrator/debug_views.h"
 #include "integrator/direct_pilot.h"
@@ -66,19 +67,19 @@ static float pixel_share(const scene *s, const ag_render_settings *settings)
 static transport make_transport(ag_context *context, const scene *s, const ag_render_settings *settings,
                                 const aov_layout *layout)
 {
-    transport t = {.s = s,
-                   .run = &context->run,
-                   .settings = settings,
-                   .split = splitting_first(settings),
-                   .ray_bits =
-                       sampler_bits(splitting_most(settings, integrator_of(settings->integrator)->splits_samples).rays),
-                   .layout = layout,
-                   .wants_layers = layout->needs_layers,
-                   .wants_groups = aov_has(layout, SUM_GROUPS),
-                   .pixel_share = pixel_share(s, settings),
-                   .has_lights = rgb_max(s->light_power) > 0.0f,
-                   .media_are_bounded = settings_bound_media(settings),
-                   .panes_are_direct = s->has_panes && settings->pane_light == AG_PANE_LIGHT_DIRECT};
+    transport t = {
+        .s = s,
+        .run = &context->run,
+        .settings = settings,
+        .split = sample_split_first(settings),
+        .ray_bits = sampler_bits(sample_split_most(settings, integrator_of(settings->integrator)->splits_samples).rays),
+        .layout = layout,
+        .wants_layers = layout->needs_layers,
+        .wants_groups = aov_has(layout, SUM_GROUPS),
+        .pixel_share = pixel_share(s, settings),
+        .has_lights = rgb_max(s->light_power) > 0.0f,
+        .media_are_bounded = settings_bound_media(settings),
+        .panes_are_direct = s->has_panes && settings->pane_light == AG_PANE_LIGHT_DIRECT};
     for (uint32_t i = 0; i < s->light_count; i++)
         t.can_meet_lights = t.can_meet_lights || light_can_be_met(&s->lights[i]);
     return t;
@@ -95,7 +96,7 @@ static uint64_t automatic_photon_count(const ag_render_settings *settings)
     if (settings->photon_map_file || settings->photon_paths > 0)
         return AG_DEFAULT_PHOTONS_MOST;
     const double samples =
-        (double)settings->width * (double)settings->height * (double)splitting_expected_samples(settings);
+        (double)settings->width * (double)settings->height * (double)sample_split_expected_samples(settings);
     return (uint64_t)fmin(fmax(PHOTONS_PER_SAMPLE * samples, PHOTONS_LEAST), AG_DEFAULT_PHOTONS_MOST);
 }
 

@@ -1,6 +1,7 @@
 /* split_pilot.c: see split_pilot.h. */
 #include "split_pilot.h"
 
+#include "film/splitting.h"
 #include "render_tiles.h"
 #include "status.h"
 

@@ -88,6 +88,8 @@ set(cut
   "^scene/shape/.*->scene/(material|light)/"
   "^scene/material/.*->scene/light/"
   "^scene/light/.*->scene/material/"
+  "^scene/light/environment\\.[ch]->scene/light/portal\\.h$"
+  "^renderer/film/(film|sample_split)\\.[ch]->renderer/film/splitting\\.h$"
   "^scene/rays/.*->scene/light/"
   "^scene/readers/gltf/.*->scene/readers/(pbrt|model)/"
   "^scene/readers/model/.*->scene/readers/(pbrt|gltf)/"

@@ -41,7 +41,7 @@ static void set_crop(ag_film *film, const ag_render_settings *settings, bool spl
     if (film->width < 1 || film->height < 1)
         film->width = film->height = 0;
     film->area = (film_area){film->x0, film->y0, film->width, film->height};
-    if ((settings->noise_level > 0.0f || splitting_goes_on(settings, splits_samples)) && film->width > 0) {
+    if ((settings->noise_level > 0.0f || sample_split_goes_on(settings, splits_samples)) && film->width > 0) {
         int x0 = edges[0] / FILM_BLOCK * FILM_BLOCK, y0 = edges[2] / FILM_BLOCK * FILM_BLOCK;
         int x1 = (edges[1] + FILM_BLOCK - 1) / FILM_BLOCK * FILM_BLOCK,
             y1 = (edges[3] + FILM_BLOCK - 1) / FILM_BLOCK * FILM_BLOCK;
@@ -96,10 +96,10 @@ ag_film *film_create(const ag_render_settings *settings, const working_space *sp
         film->wanted = calloc(count, sizeof *film->wanted);
         is_whole = is_whole && film->wanted;
     }
-    if (splitting_is_open(settings, splits_samples)) {
+    if (sample_split_is_open(settings, splits_samples)) {
         film->splits = calloc(count, sizeof *film->splits);
         is_whole = is_whole && film->splits;
-        splitting_set_first(film, settings);
+        film_set_first_splits(film, settings);
     }
     if (film->layout.needs_nearest) {
         film->nearest = calloc(count, sizeof *film->nearest);
@@ -170,12 +170,21 @@ int film_planes(ag_film *film, film_plane out_planes[FILM_PLANES_MAX])
     return count;
 }
 
+void film_set_first_splits(struct ag_film *film, const ag_render_settings *settings)
+{
+    const film_area *all = &film->area;
+    for (int y = all->y0; film->splits && y < all->y0 + all->height; y++)
+        for (int x = all->x0; x < all->x0 + all->width; x++)
+            film->splits[film_pixel_at(film, x, y)].counts =
+                film->prior.first ? film->prior.first[film_block_number(film, x, y)] : sample_split_first(settings);
+}
+
 void film_clear(ag_film *film, const ag_render_settings *settings)
 {
     film_plane planes[FILM_PLANES_MAX];
     for (int i = sample_planes(film, planes) - 1; i >= 0; i--)
         memset(planes[i].bytes, 0, planes[i].size);
-    splitting_set_first(film, settings);
+    film_set_first_splits(film, settings);
 }
 
 film_area film_block_at(const ag_film *film, int column, int row)

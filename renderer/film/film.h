@@ -9,7 +9,7 @@
 #include "film/film_response.h"
 #include "film/noise.h"
 #include "film/pixel_filter.h"
-#include "film/splitting.h"
+#include "film/sample_split.h"
 
 /* The surface nearest to the eye that a pixel's samples met, which is what depth and ids mean; no mean of them means
  * anything. */
@@ -57,7 +57,7 @@ struct ag_film {
     double *sums;                  /* [layout.sum_count], of filters with negative lobes twice: by the samples' sign */
     uint32_t *counts;              /* samples so far */
     uint32_t *wanted;              /* samples that it is to have, see adaptive.h; NULL: as many as all */
-    split_trial *splits;           /* see splitting.h; NULL: all samples are split alike */
+    split_trial *splits;           /* see sample_split.h; NULL: all samples are split alike */
     uint32_t *negatives;           /* samples with sign -1; NULL where the filter has no signs */
     float *views[FILM_VIEW_COUNT]; /* a plane each; NULL where not asked for */
     cryptomatte mattes[CRYPTOMATTE_KIND_COUNT];
@@ -72,7 +72,7 @@ struct ag_film {
 };
 
 /* Returns an empty film of the settings' crop; takes the layout, on failure too (it is then reset). NULL when out of
- * memory. A crop that holds no pixel has width 0. splits_samples: see splitting.h. */
+ * memory. A crop that holds no pixel has width 0. splits_samples: see sample_split.h. */
 struct ag_film *film_create(const ag_render_settings *settings, const working_space *space, const pixel_filter *filter,
                             bool splits_samples, aov_layout *layout);
 
@@ -90,6 +90,9 @@ static inline size_t film_pixel_at(const struct ag_film *film, int x, int y)
 /* The next sample of a pixel, by the number of the pixel in the area; with layers where the layout or the noise's
  * lattice wants them. */
 void film_add(struct ag_film *film, size_t pixel, const eye_sample *sample);
+
+/* Sets how the first samples of all pixels are split; does nothing where blocks do not choose. */
+void film_set_first_splits(struct ag_film *film, const ag_render_settings *settings);
 
 /* Removes all samples; keeps what the pilot has told. */
 void film_clear(struct ag_film *film, const ag_render_settings *settings);

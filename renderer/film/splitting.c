@@ -6,24 +6,11 @@
 
 #include <stdlib.h>
 
-/* The split is decided at FIRST_BARRIER samples, and each time that there are BARRIER_STEP times as many. */
-enum { FIRST_BARRIER = 4, BARRIER_STEP = 4 };
+/* The split is decided again each time that there are so many times as many samples. */
+enum { BARRIER_STEP = 4 };
 
-/* So many samples of a pixel are expected with a level of noise: AG_DEFAULT_GATHER_RAYS_PER_PIXEL is shared out among
- * them. */
-enum { ADAPTIVE_SAMPLES = 64 };
-
-/* Without a choice there is a light sample for so many gather rays. With it there are many at first: blocks where few
- * are enough find that out, and behind windows, where light comes from is what is known least. */
-enum { GATHER_RAYS_PER_LIGHT_SAMPLE = 8, FIRST_LIGHTS = 16 };
-enum { RAYS_MAX = 64, LIGHTS_MAX = 16 };
-/* Caustics that a block's first samples have missed are 2 to this power times as bright, at most; blocks that stop at a
- * level of noise might stop before they are asked for. */
-enum { CAUSTIC_BITS_FIXED = 2, CAUSTIC_BITS_ADAPTIVE = 1 };
-
-/* Rays and light samples of the first camera samples, at least: from one the variance cannot be told, and the pilot may
- * have looked past small things. */
-enum { FIRST_RAYS_MIN = 4, FIRST_LIGHTS_MIN = 4 };
+/* Light samples of the first camera samples, at least: the pilot may have looked past small things. */
+enum { FIRST_LIGHTS_MIN = 4 };
 
 /* A fixed number of camera samples needs no standard error (noise.h) of the frame below this, which nobody sees. */
 static const double FIXED_CLEAN = 0.003;
@@ -42,87 +29,6 @@ static const double PILOT_HALF_WINDOW = 2.0;
 static const double LEAST_REST = 1.0 / 64.0;
 
 static const double SQRT_2 = 1.4142135623730951;
-
-bool splitting_is_open(const ag_render_settings *settings, bool splits_samples)
-{
-    return splits_samples && settings->gather_samples == 0;
-}
-
-bool splitting_goes_on(const ag_render_settings *settings, bool splits_samples)
-{
-    return splitting_is_open(settings, splits_samples) &&
-           (settings->noise_level > 0.0f || settings->samples_per_pixel > FIRST_BARRIER);
-}
-
-int splitting_expected_samples(const ag_render_settings *settings)
-{
-    const int samples = settings->samples_per_pixel;
-    return settings->noise_level > 0.0f && samples > ADAPTIVE_SAMPLES ? ADAPTIVE_SAMPLES : samples;
-}
-
-split_counts splitting_first(const ag_render_settings *settings)
-{
-    uint32_t rays = (uint32_t)settings->gather_samples;
-    if (rays > 0)
-        return (split_counts){.rays = rays,
-                              .lights = (rays + GATHER_RAYS_PER_LIGHT_SAMPLE - 1) / GATHER_RAYS_PER_LIGHT_SAMPLE};
-    const int samples = splitting_expected_samples(settings);
-    if (samples > 0 && AG_DEFAULT_GATHER_RAYS_PER_PIXEL / samples > FIRST_RAYS_MIN)
-        rays = (uint32_t)(AG_DEFAULT_GATHER_RAYS_PER_PIXEL / samples);
-    return (split_counts){.rays = rays > 0 ? rays : FIRST_RAYS_MIN, .lights = FIRST_LIGHTS};
-}
-
-split_counts splitting_most(const ag_render_settings *settings, bool splits_samples)
-{
-    split_counts most = splitting_first(settings);
-    if (!splitting_is_open(settings, splits_samples))
-        return most;
-    most.lights = LIGHTS_MAX;
-    if (!(settings->clamp_indirect > 0.0f)) /* a bound would cut what chance has made brighter */
-        most.caustic_bits = settings->noise_level > 0.0f ? CAUSTIC_BITS_ADAPTIVE : CAUSTIC_BITS_FIXED;
-    if (settings->noise_level > 0.0f && most.rays < RAYS_MAX) /* else the first rays bound the time */
-        most.rays = RAYS_MAX;
-    return most;
-}
-
-void split_prior_reset(split_prior *prior)
-{
-    free(prior->first);
-    *prior = (split_prior){0};
-}
-
-void splitting_set_first(struct ag_film *film, const ag_render_settings *settings)
-{
-    const film_area *all = &film->area;
-    for (int y = all->y0; film->splits && y < all->y0 + all->height; y++)
-        for (int x = all->x0; x < all->x0 + all->width; x++)
-            film->splits[film_pixel_at(film, x, y)].counts =
-                film->prior.first ? film->prior.first[film_block_number(film, x, y)] : splitting_first(settings);
-}
-
-void split_trial_add(split_trial *trial, const eye_sample *sample)
-{
-    rgb radiance = sample->radiance;
-    float value = rgb_mean(radiance), rays = (float)trial->counts.rays, lights = (float)trial->counts.lights;
-    float asked = (float)(1u << trial->counts.caustic_bits);
-    trial->value += value;
-    trial->square += value * value;
-    trial->by_parts += sample->gather_variance;
-    trial->by_ray += sample->gather_variance * rays;
-    trial->cost_of_ray += (float)sample->gather_cost / rays;
-    trial->cost_of_light += (float)sample->light_cost / lights;
-    trial->by_parts += sample->caustic_square * (asked - 1.0f);
-    trial->caustic += sample->caustic_square;
-    trial->cost_of_caustic += (float)sample->caustic_cost * asked;
-    trial->cost_of_rest += (float)sample->rest_cost;
-    if (trial->counts.lights < 2)
-        return;
-    trial->by_parts += sample->light_variance;
-    trial->by_light += sample->light_variance * lights;
-    trial->lights_known++;
-}
-
-/* --- deciding --- */
 
 /* The number of a block's pixels, and sums over them: of variances of one sample, as shown, and of its costs. */
 typedef struct block_sums {
@@ -226,7 +132,7 @@ static choice make_choice(const ag_render_settings *settings)
 {
     return (choice){noise_shown_scale(settings) * (double)settings->exposure,
                     {.rays = 1, .lights = 1},
-                    splitting_most(settings, true)};
+                    sample_split_most(settings, true)};
 }
 
 /* A block all of whose pixels have had `barrier` samples; another was decided on before, or needs no more. */
@@ -282,7 +188,7 @@ static split_counts counts_by_pilot(const struct ag_film *film, const struct ag_
             size_t pixel = film_pixel_at(pilot, column, row);
             add_pixel(&pilot->splits[pixel], (double)pilot->counts[pixel], c->scale, &sums);
         }
-    split_counts counts = best_counts(film, &sums, c), unknown = splitting_first(settings);
+    split_counts counts = best_counts(film, &sums, c), unknown = sample_split_first(settings);
     if (!(sums.cost_of_ray > 0.0)) /* the pilot has met nothing there that gathers */
         counts.rays = unknown.rays;
     if (!(sums.cost_of_light > 0.0))
@@ -361,7 +267,7 @@ ag_status splitting_begin(struct ag_film *film, const struct ag_film *pilot, dou
     const double clean = FIXED_CLEAN * FIXED_CLEAN * samples;
     split_prior *prior = &film->prior;
     AG_TRY(find_cost_per_variance(pilot, &c, fixed, clean, &prior->cost_per_variance));
-    c.least = (split_counts){.rays = FIRST_RAYS_MIN, .lights = FIRST_LIGHTS_MIN};
+    c.least = (split_counts){.rays = SPLIT_FIRST_RAYS_MIN, .lights = FIRST_LIGHTS_MIN};
     if (!prior->first)
         prior->first = malloc((film_block_number(film, right - 1, bottom - 1) + 1) * sizeof *prior->first);
     if (!prior->first)
@@ -369,14 +275,14 @@ ag_status splitting_begin(struct ag_film *film, const struct ag_film *pilot, dou
     for (int y = all->y0 / FILM_BLOCK * FILM_BLOCK; y < bottom; y += FILM_BLOCK)
         for (int x = all->x0 / FILM_BLOCK * FILM_BLOCK; x < right; x += FILM_BLOCK)
             prior->first[film_block_number(film, x, y)] = counts_by_pilot(film, pilot, x, y, &c, settings);
-    splitting_set_first(film, settings);
+    film_set_first_splits(film, settings);
     return AG_OK;
 }
 
 uint32_t splitting_decide(struct ag_film *film, const ag_render_settings *settings, uint32_t wanted)
 {
     uint32_t least = least_count(film, wanted);
-    uint64_t barrier = FIRST_BARRIER;
+    uint64_t barrier = SPLIT_FIRST_BARRIER;
     while (barrier < least)
         barrier *= BARRIER_STEP;
     if (barrier == least && least < wanted) {

@@ -3,6 +3,7 @@
  * however the work is cut into passes, and in crops; and the choice pays. Threads: the renderer's. */
 #define _GNU_SOURCE
 #include "film/film.h"
+#include "film/splitting.h"
 #include "fixtures/layers_fixture.h"
 #include "fixtures/sanitizer.h"
 #include "math/rng.h"
@@ -165,7 +166,7 @@ static void test_first_numbers_of_the_unknown(void **state)
     for (size_t i = 0; i < film_area_count(pilot); i++)
         for (int k = 0; k < 4; k++)
             film_add(pilot, i, &(eye_sample){.sign = 1, .rest_cost = 1});
-    split_counts first = splitting_first(&settings);
+    split_counts first = sample_split_first(&settings);
     assert_int_equal(splitting_begin(film, pilot, 0.0, &settings), AG_OK);
     assert_true(film->splits[0].counts.rays == first.rays && film->splits[0].counts.lights == first.lights);
     assert_true(first.rays == 4 && first.lights == 16);
@@ -194,14 +195,14 @@ static void test_given_number(void **state)
     ag_render_settings settings = settings_of(0.0f, 16);
     settings.gather_samples = 20;
     ag_film *film = create_film(&settings);
-    assert_false(splitting_is_open(&settings, true));
+    assert_false(sample_split_is_open(&settings, true));
     assert_null(film->splits);
-    split_counts counts = splitting_first(&settings);
+    split_counts counts = sample_split_first(&settings);
     assert_true(counts.rays == 20 && counts.lights == 3);
     ag_film_destroy(film);
     settings.gather_samples = 0;
-    assert_true(splitting_is_open(&settings, true));
-    assert_false(splitting_is_open(&settings, false));
+    assert_true(sample_split_is_open(&settings, true));
+    assert_false(sample_split_is_open(&settings, false));
 }
 
 /* A sample of mean 2, skewed: 1 / share with probability share, and as much in the mean by gather rays. */
