@@ -3,7 +3,6 @@
 #include "scene_hash.h"
 
 #include "light/light_type.h"
-#include "medium/medium_roulette.h"
 #include "scene.h"
 #include "shape/curves.h"
 #include "shape/mesh_motion.h"
@@ -210,15 +209,9 @@ hash128 scene_hash_of_light(const scene *s)
     ADD(s->material_count);
     for (uint32_t i = 0; i < s->material_count; i++)
         add_material(h, &s->materials[i]);
-    const int roulette_after = MEDIUM_ROULETTE_AFTER; /* photons are others by another */
     ADD(s->medium_count);
-    for (uint32_t i = 0; i < s->medium_count; i++) {
-        ADD(s->media[i].sigma_a);
-        ADD(s->media[i].sigma_s);
-        ADD(s->media[i].g);
-        if (medium_scatters(&s->media[i]))
-            ADD(roulette_after);
-    }
+    for (uint32_t i = 0; i < s->medium_count; i++)
+        medium_add_hash(&s->media[i], h);
     ADD(s->shape_count);
     for (uint32_t i = 0; i < s->shape_count; i++)
         add_shape(h, &s->shapes[i]);

@@ -2,6 +2,7 @@
 #include "medium/medium.h"
 
 #include "material/fresnel.h"
+#include "medium/medium_roulette.h"
 
 static float channel_transmittance(float extinction, float distance)
 {
@@ -13,4 +14,14 @@ rgb medium_transmittance(const medium *m, float distance)
     rgb extinction = medium_extinction(m);
     return (rgb){channel_transmittance(extinction.r, distance), channel_transmittance(extinction.g, distance),
                  channel_transmittance(extinction.b, distance)};
+}
+
+void medium_add_hash(const medium *m, hash128 *h)
+{
+    const int roulette_after = MEDIUM_ROULETTE_AFTER; /* by another, photons are others */
+    HASH128_ADD(h, m->sigma_a);
+    HASH128_ADD(h, m->sigma_s);
+    HASH128_ADD(h, m->g);
+    if (medium_scatters(m))
+        HASH128_ADD(h, roulette_after);
 }

@@ -7,6 +7,7 @@
 #ifndef AFTERGLOW_MEDIUM_H
 #define AFTERGLOW_MEDIUM_H
 
+#include "math/hash128.h"
 #include "math/vec3.h"
 
 #include <stdbool.h>
@@ -26,6 +27,9 @@ static inline rgb medium_extinction(const medium *m) { return rgb_add(m->sigma_a
 /* Returns the share of light that is neither absorbed nor scattered over a distance in scene units; INFINITY is
  * fine. */
 rgb medium_transmittance(const medium *m, float distance);
+
+/* Adds all that light notices of the medium, as scene_hash_of_light asks. */
+void medium_add_hash(const medium *m, hash128 *h);
 
 /* Finds by pbrt-v4's name what a measured liquid or solid absorbs and scatters, 1/mm; the latter is reduced, as if it
  * scattered alike in all directions. Returns false for an unknown name. */
