@@ -205,6 +205,12 @@ static irradiance_extent fit_to_surface(const photon_map *map, const clear_space
     photon_disc_sums inside;
     bool is_k = disc_kernels_best()->sum_in_region(disc, &region, found, &inside) == map->nearest && has_next;
     bool holds = is_k || region_holds(map, area, disc->radius);
+    if (!holds && area < least_area) {
+        surface_region_follow_strip(map->surfaces, space, disc->normal, PHOTON_ESTIMATE_MIN_COS, disc->radius,
+                                    in_out_rays, &region);
+        area = surface_region_area(&region, disc->radius);
+        disc_kernels_best()->sum_in_region(disc, &region, found, &inside);
+    }
     if (holds || least_area > 0.0) {
         *in_out_sums = inside;
         *in_out_area = holds ? area : fmax(area, least_area);

@@ -42,9 +42,10 @@ irradiance_extent irradiance_estimate_find_reach(const photon_map *map, vec3 pos
                                                  uint64_t *in_out_rays, rgb *out_irradiance, float *out_reach_squared);
 
 /* Returns the irradiance where it is seen directly, so that another estimate cannot take its place: on a surface too
- * small to hold one, the flux of its own photons over its area, m^2, as it lies in the tangent plane of the point, or
- * over least_area (> 0) where that is larger. The mean is then right for flat surfaces that are not smaller than that,
- * somewhat high for small round ones, and no photon is brighter than on that area. */
+ * small to hold one, the flux of its own photons over its area, m^2, along the surface as it bends, or over least_area
+ * (> 0) where that is larger. The mean is then right on flat and on round surfaces that are not smaller than that; rods
+ * thinner than a fortieth of the disc's radius have up to a fifth too little. No photon is brighter than on that area.
+ */
 rgb irradiance_estimate_seen(const photon_map *map, vec3 position, vec3 normal, double least_area,
                              photon_neighbor *scratch, uint64_t *in_out_rays);
 

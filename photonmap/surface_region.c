@@ -13,15 +13,19 @@
 static const float LIFT = 1.0f / 32.0f;
 /* Where nothing stands in the way the surface is looked for this far out; beyond lie 2 % of the disc at most. */
 static const float PROBE_AT = 0.9f;
-enum { BISECTIONS = 7, FOOT_TRIALS = 3 };
+/* Before what stands in the way it is looked for as near to that as this: a rod beside another one ends before it. */
+static const float PROBE_BEFORE = 0.98f;
+/* On strips ends are found within this share of how far they are, so that the strip's direction is known. */
+static const float FINE = 1.0f / 64.0f;
+enum { BISECTIONS = 7, BISECTIONS_MOST = 12, FOOT_TRIALS = 3 };
+/* What falls by less than this share of the way is flat: its area is right within 0.04 %. The plane that a clear space
+ * is bounded by is level if the cosine says so. */
+static const float FLAT_SLOPE = 0.02f, FLAT_COS = 0.9999f;
+/* Normals are alike up to 60 degrees, and the tangent of half of it is this; a bend that runs across the tangent is
+ * told no better than by this cosine. */
+static const float HALF_MOST = 0.57735f, ALONG_LEAST = 0.25f;
 /* Lateral distances are no shorter than this share of the radius. */
 static const float SHORTEST = 0x1p-10f;
-
-/* The bounds of the octants, counter-clockwise. */
-#define DIAGONAL 0.70710678f
-static const float UNIT[SURFACE_REGION_SECTORS][2] = {
-    {1.0f, 0.0f},  {DIAGONAL, DIAGONAL},   {0.0f, 1.0f},  {-DIAGONAL, DIAGONAL},
-    {-1.0f, 0.0f}, {-DIAGONAL, -DIAGONAL}, {0.0f, -1.0f}, {DIAGONAL, -DIAGONAL}};
 
 static bool is_alike(const surface_hit *hit, vec3 normal, vec3 arrival, float min_cos)
 {
@@ -34,6 +38,7 @@ typedef struct probe {
     const clear_space *space; /* may be NULL */
     vec3 above, normal;       /* the point, lifted along its normal */
     float lift, radius, min_cos;
+    bool is_fine; /* short distances are found as accurately as long ones */
     ray_alpha_rule alpha_rule;
     uint64_t *rays; /* counts them */
 } probe;
@@ -72,41 +77,98 @@ static bool find_foot(probe *p, vec3 position, vec3 normal, surface_hit *out_foo
     return false;
 }
 
-/* Whether the surface is there so far along a unit tangent: as deep as photons within the radius may lie. out_holes:
- * whether with holes; may be NULL. */
-static bool find_below(const probe *p, vec3 tangent, float lateral, bool *out_holes)
+/* What a probe has found below: nothing is known of it where a clear space has told that it is there. */
+typedef struct below {
+    bool is_met; /* by a ray */
+    bool has_holes;
+    float drop; /* below the plane through the point, scene units */
+    vec3 normal;
+} below;
+
+static vec3 start_of_probe(const probe *p, vec3 tangent, float lateral)
+{
+    return vec3_add_scaled(p->above, tangent, lateral);
+}
+
+/* Whether a ray meets the surface so far along a unit tangent: as deep as photons within the radius may lie. */
+static bool meet_below(const probe *p, vec3 tangent, float lateral, float farthest, below *out)
 {
     surface_hit hit;
-    vec3 start = vec3_add_scaled(p->above, tangent, lateral), down = vec3_negate(p->normal);
+    vec3 down = vec3_negate(p->normal);
+    if (!find_surface(p, start_of_probe(p, tangent, lateral), down, farthest, &hit) ||
+        !is_alike(&hit, p->normal, down, p->min_cos))
+        return false;
+    *out = (below){.is_met = true,
+                   .has_holes = has_holes(p->s, &hit),
+                   .drop = hit.distance - p->lift,
+                   .normal = vec3_face_forward(hit.geometric_normal, p->normal)};
+    return true;
+}
+
+/* meet_below, but for rays whose answer the clear space tells. */
+static bool find_below(const probe *p, vec3 tangent, float lateral, below *out)
+{
     float farthest = p->lift + sqrtf(fmaxf(0.0f, p->radius * p->radius - lateral * lateral));
-    if (out_holes)
-        *out_holes = false;
-    if (p->space && clear_space_ends_ray(p->s, p->space, start, down, farthest, p->min_cos))
-        return true;
-    bool is_there = find_surface(p, start, down, farthest, &hit) && is_alike(&hit, p->normal, down, p->min_cos);
-    if (is_there && out_holes)
-        *out_holes = has_holes(p->s, &hit);
-    return is_there;
+    *out = (below){0};
+    return (p->space && clear_space_ends_ray(p->s, p->space, start_of_probe(p, tangent, lateral),
+                                             vec3_negate(p->normal), farthest, p->min_cos)) ||
+           meet_below(p, tangent, lateral, farthest, out);
+}
+
+/* How a surface bends on its way out along a unit tangent to what was found below: its normal's part in the plane there
+ * by how far that is, if it were an arc of a circle. The drop tells it rather than the normal, since most of a board
+ * with a round edge is flat; the normal tells which way it bends. */
+static vec3 find_bend(const probe *p, vec3 tangent, float lateral, const below *found)
+{
+    below met = *found;
+    const vec3 flat = {0.0f, 0.0f, 0.0f};
+    if (!met.is_met) {
+        bool is_level =
+            p->space && p->space->plane_count > 0 && vec3_dot(p->space->plane[0].normal, p->normal) > FLAT_COS;
+        if (is_level || !meet_below(p, tangent, lateral, INFINITY, &met))
+            return flat;
+    }
+    float slope = met.drop / lateral; /* the tangent of half the angle */
+    vec3 tilt = vec3_add_scaled(met.normal, p->normal, -vec3_dot(met.normal, p->normal));
+    float length = vec3_length(tilt);
+    if (fabsf(slope) < FLAT_SLOPE || !(length > FLAT_SLOPE))
+        return flat;
+    /* the drop is along the tangent, the bend along the tilt */
+    float along = fmaxf(fabsf(vec3_dot(tilt, tangent)) / length, ALONG_LEAST);
+    float half = fminf(fabsf(slope) / along, HALF_MOST), sine = 2.0f * half / (1.0f + half * half);
+    return vec3_scale(tilt, sine / (length * lateral));
 }
 
 /* How far the surface goes along a unit tangent; radius where nothing ends it. */
-static float find_extent(const probe *p, vec3 tangent)
+static float find_extent(const probe *p, vec3 tangent, vec3 *out_bend)
 {
     surface_hit hit;
+    *out_bend = (vec3){0.0f, 0.0f, 0.0f};
+    float end = p->radius, high = PROBE_AT * p->radius, low = 0.0f;
     bool is_free =
         p->space && clear_space_has_line(p->s, p->space, p->above, vec3_add_scaled(p->above, tangent, p->radius));
-    if (!is_free && find_surface(p, p->above, tangent, p->radius, &hit))
-        return is_alike(&hit, p->normal, tangent, p->min_cos) ? p->radius : hit.distance;
-    float high = PROBE_AT * p->radius, low = 0.0f;
-    if (find_below(p, tangent, high, NULL))
-        return p->radius;
-    for (int i = 0; i < BISECTIONS; i++) {
-        float middle = 0.5f * (low + high);
-        if (find_below(p, tangent, middle, NULL))
-            low = middle;
-        else
-            high = middle;
+    if (!is_free && find_surface(p, p->above, tangent, p->radius, &hit)) {
+        end = is_alike(&hit, p->normal, tangent, p->min_cos) ? p->radius : hit.distance;
+        if (!p->is_fine)
+            return end;
+        high = fminf(high, PROBE_BEFORE * hit.distance);
     }
+    below last, found;
+    if (find_below(p, tangent, high, &last)) {
+        *out_bend = find_bend(p, tangent, high, &last);
+        return end;
+    }
+    for (int i = 0; i < BISECTIONS || (p->is_fine && i < BISECTIONS_MOST && high - low > FINE * low); i++) {
+        float middle = 0.5f * (low + high);
+        if (find_below(p, tangent, middle, &found)) {
+            low = middle;
+            last = found;
+        } else {
+            high = middle;
+        }
+    }
+    if (low > 0.0f)
+        *out_bend = find_bend(p, tangent, low, &last);
     return low;
 }
 
@@ -114,8 +176,8 @@ static float find_extent(const probe *p, vec3 tangent)
 static void line_through(const float *extent, int first, float *out_line)
 {
     int second = (first + 1) % SURFACE_REGION_SECTORS;
-    float ax = UNIT[first][0] * extent[first], ay = UNIT[first][1] * extent[first];
-    float bx = UNIT[second][0] * extent[second], by = UNIT[second][1] * extent[second];
+    float ax = SURFACE_REGION_BOUND[first][0] * extent[first], ay = SURFACE_REGION_BOUND[first][1] * extent[first];
+    float bx = SURFACE_REGION_BOUND[second][0] * extent[second], by = SURFACE_REGION_BOUND[second][1] * extent[second];
     float inverse = 1.0f / (ax * by - ay * bx);
     out_line[0] = (by - ay) * inverse;
     out_line[1] = (ax - bx) * inverse;
@@ -136,7 +198,8 @@ static void bound_sector(const float *extent, float radius, int i, float *out_li
         int neighbor = is_open ? after : before, open = is_open ? i : next;
         if (extent[neighbor] < radius) {
             line_through(extent, is_open ? next : before, out_line);
-            if (radius * (out_line[0] * UNIT[open][0] + out_line[1] * UNIT[open][1]) <= 1.0f)
+            if (radius * (out_line[0] * SURFACE_REGION_BOUND[open][0] + out_line[1] * SURFACE_REGION_BOUND[open][1]) <=
+                1.0f)
                 return;
         }
     }
@@ -175,9 +238,10 @@ static float share_that_is_there(const probe *p, const surface_region *r)
         vec3 tangent = vec3_add_scaled(vec3_scale(r->x, d.x / length), r->y, d.y / length);
         if (!surface_region_contains(r, vec3_add_scaled(r->center, tangent, length * p->radius)))
             continue;
-        bool is_there = find_below(&what_is_there, tangent, length * p->radius, NULL);
+        below found;
+        bool is_there = find_below(&what_is_there, tangent, length * p->radius, &found);
         there += is_there;
-        all += is_there || find_below(p, tangent, length * p->radius, NULL);
+        all += is_there || find_below(p, tangent, length * p->radius, &found);
     }
     /* one more of each, the point itself: of a binomial count that makes the mean of 1 / share right */
     return ((float)there + 1.0f) / ((float)all + 1.0f);
@@ -188,12 +252,12 @@ bool surface_region_reaches_rim(const scene *s, const clear_space *space, vec3 p
 {
     float lift = LIFT * radius;
     vec3 above = vec3_add_scaled(position, normal, lift), x, y;
-    probe p = {s, space, above, normal, lift, radius, min_cos, RAY_MEETS_ALPHA, in_out_rays};
+    probe p = {s, space, above, normal, lift, radius, min_cos, false, RAY_MEETS_ALPHA, in_out_rays};
     find_tangents(position, normal, &x, &y);
     for (int i = 0; i < SURFACE_REGION_SECTORS; i += 2) {
-        bool has_holes_there;
-        vec3 tangent = vec3_add_scaled(vec3_scale(x, UNIT[i][0]), y, UNIT[i][1]);
-        if (!find_below(&p, tangent, PROBE_AT * radius, &has_holes_there) || has_holes_there)
+        below found;
+        vec3 tangent = vec3_add_scaled(vec3_scale(x, SURFACE_REGION_BOUND[i][0]), y, SURFACE_REGION_BOUND[i][1]);
+        if (!find_below(&p, tangent, PROBE_AT * radius, &found) || found.has_holes)
             return false;
     }
     return true;
@@ -205,33 +269,72 @@ bool surface_region_is_whole(const scene *s, const clear_space *space, vec3 posi
     return clear_space_holds_disc(s, space, position, normal, radius, PROBE_AT, min_cos);
 }
 
+/* Finds the region in the frame x, y. Returns false where the surface has neither an end nor a hole. */
+static bool fill_region(probe *p, bool may_be_empty, surface_region *r)
+{
+    float extent[SURFACE_REGION_SECTORS];
+    if (may_be_empty)
+        p->alpha_rule = RAY_MEETS_EMPTY_ALPHA; /* holes are no ends: there may be one in every direction */
+    r->nearest_end = p->radius;
+    for (int i = 0; i < SURFACE_REGION_SECTORS; i++) {
+        vec3 bend;
+        extent[i] = find_extent(
+            p, vec3_add_scaled(vec3_scale(r->x, SURFACE_REGION_BOUND[i][0]), r->y, SURFACE_REGION_BOUND[i][1]), &bend);
+        r->bend[i][0] = vec3_dot(bend, r->x);
+        r->bend[i][1] = vec3_dot(bend, r->y);
+        r->nearest_end = fminf(r->nearest_end, extent[i]);
+        extent[i] = fmaxf(extent[i], SHORTEST * p->radius);
+    }
+    if (r->nearest_end >= p->radius && !may_be_empty)
+        return false;
+    for (int i = 0; i < SURFACE_REGION_SECTORS; i++)
+        bound_sector(extent, p->radius, i, r->line[i]);
+    r->share = may_be_empty ? share_that_is_there(p, r) : 1.0f;
+    return r->nearest_end < p->radius || r->share < 1.0f;
+}
+
 bool surface_region_find(const scene *s, const clear_space *space, vec3 position, vec3 normal, float min_cos,
                          float radius, uint64_t *in_out_rays, surface_region *out_region)
 {
-    float extent[SURFACE_REGION_SECTORS];
-    surface_region *r = out_region;
-    probe p = {s, space, position, normal, 0.0f, radius, min_cos, RAY_MEETS_ALPHA, in_out_rays};
+    probe p = {s, space, position, normal, 0.0f, radius, min_cos, false, RAY_MEETS_ALPHA, in_out_rays};
     surface_hit foot;
     if (!find_foot(&p, position, normal, &foot))
         return false;
-    bool may_be_empty = has_holes(s, &foot);
-    r->center = position;
-    find_tangents(position, p.normal, &r->x, &r->y);
+    out_region->center = position;
+    find_tangents(position, p.normal, &out_region->x, &out_region->y);
+    return fill_region(&p, has_holes(s, &foot), out_region);
+}
 
-    if (may_be_empty)
-        p.alpha_rule = RAY_MEETS_EMPTY_ALPHA; /* holes are no ends: there may be one in every direction */
-    r->nearest_end = radius;
+/* Turns the frame so that x runs along the nearest of the region's bounds. */
+static void turn_along_edge(surface_region *r)
+{
+    float largest = 0.0f, along[2] = {1.0f, 0.0f};
     for (int i = 0; i < SURFACE_REGION_SECTORS; i++) {
-        extent[i] = find_extent(&p, vec3_add_scaled(vec3_scale(r->x, UNIT[i][0]), r->y, UNIT[i][1]));
-        r->nearest_end = fminf(r->nearest_end, extent[i]);
-        extent[i] = fmaxf(extent[i], SHORTEST * radius);
+        float a = r->line[i][0], b = r->line[i][1], square = a * a + b * b;
+        if (square > largest) {
+            float inverse = 1.0f / sqrtf(square);
+            largest = square;
+            along[0] = b * inverse;
+            along[1] = -a * inverse;
+        }
     }
-    if (r->nearest_end >= radius && !may_be_empty)
-        return false;
-    for (int i = 0; i < SURFACE_REGION_SECTORS; i++)
-        bound_sector(extent, radius, i, r->line[i]);
-    r->share = may_be_empty ? share_that_is_there(&p, r) : 1.0f;
-    return r->nearest_end < radius || r->share < 1.0f;
+    vec3 x = vec3_add_scaled(vec3_scale(r->x, along[0]), r->y, along[1]);
+    r->y = vec3_add_scaled(vec3_scale(r->y, along[0]), r->x, -along[1]);
+    r->x = x;
+}
+
+void surface_region_follow_strip(const scene *s, const clear_space *space, vec3 normal, float min_cos, float radius,
+                                 uint64_t *in_out_rays, surface_region *in_out_region)
+{
+    probe p = {s, space, in_out_region->center, normal, 0.0f, radius, min_cos, true, RAY_MEETS_ALPHA, in_out_rays};
+    surface_hit foot;
+    if (!find_foot(&p, in_out_region->center, normal, &foot))
+        return;
+    surface_region turned = *in_out_region;
+    turn_along_edge(&turned);
+    if (fill_region(&p, has_holes(s, &foot), &turned) &&
+        surface_region_area(&turned, radius) > surface_region_area(in_out_region, radius))
+        *in_out_region = turned;
 }
 
 bool surface_region_contains(const surface_region *region, vec3 position)
@@ -240,24 +343,4 @@ bool surface_region_contains(const surface_region *region, vec3 position)
     float x = vec3_dot(offset, region->x), y = vec3_dot(offset, region->y);
     const float *line = region->line[SURFACE_REGION_OCTANT[(y < 0.0f) * 4 + (x < 0.0f) * 2 + (fabsf(y) > fabsf(x))]];
     return line[0] * x + line[1] * y <= 1.0f;
-}
-
-double surface_region_area(const surface_region *region, float radius)
-{
-    /* the middles of eight parts of an octant, by cosine and sine */
-    enum { PARTS = 8 };
-    static const float PART[PARTS][2] = {
-        {0.99879546f, 0.04906767f}, {0.98917651f, 0.14673047f}, {0.97003125f, 0.24298018f}, {0.94154407f, 0.33688985f},
-        {0.90398929f, 0.42755509f}, {0.85772861f, 0.51410274f}, {0.80320753f, 0.59569930f}, {0.74095113f, 0.67155895f}};
-    double sum = 0.0;
-    for (int i = 0; i < SURFACE_REGION_SECTORS; i++) {
-        float a = region->line[i][0], b = region->line[i][1], ux = UNIT[i][0], uy = UNIT[i][1];
-        float along = a * ux + b * uy, across = b * ux - a * uy;
-        for (int k = 0; k < PARTS; k++) {
-            float nearness = along * PART[k][0] + across * PART[k][1]; /* one over the distance of the chord */
-            float reach = nearness * radius > 1.0f ? 1.0f / nearness : radius;
-            sum += (double)reach * (double)reach;
-        }
-    }
-    return (double)region->share * sum * (double)AG_PI / (SURFACE_REGION_SECTORS * PARTS);
 }

@@ -17,10 +17,17 @@ enum { SURFACE_REGION_SECTORS = 8 };
 typedef struct surface_region {
     vec3 center, x, y;
     float line[SURFACE_REGION_SECTORS][2];
+    float bend[SURFACE_REGION_SECTORS][2]; /* along each octant's first bound, and in the frame x, y: by how much the
+                                              normal's part in the plane grows over a scene unit; 0 where flat */
     float share; /* share of the area within those bounds that is surface: below 1 where alpha cuts holes (alpha.h) */
     float nearest_end; /* distance from the centre to the nearest end of the surface, by the sectors' bounds, scene
                           units */
 } surface_region;
+
+/* The bounds of the octants in the frame x, y, counter-clockwise; each octant's first bound has its index. */
+static const float SURFACE_REGION_BOUND[SURFACE_REGION_SECTORS][2] = {
+    {1.0f, 0.0f},  {0.70710678f, 0.70710678f},   {0.0f, 1.0f},  {-0.70710678f, 0.70710678f},
+    {-1.0f, 0.0f}, {-0.70710678f, -0.70710678f}, {0.0f, -1.0f}, {0.70710678f, -0.70710678f}};
 
 /* The octants by bits: |y| > |x|, x < 0, y < 0, from the lowest. */
 static const uint32_t SURFACE_REGION_OCTANT[SURFACE_REGION_SECTORS] = {0, 1, 3, 2, 7, 6, 4, 5};
@@ -31,6 +38,12 @@ static const uint32_t SURFACE_REGION_OCTANT[SURFACE_REGION_SECTORS] = {0, 1, 3, 
  * surface at the point. */
 bool surface_region_find(const scene *s, const clear_space *space, vec3 position, vec3 normal, float min_cos,
                          float radius, uint64_t *in_out_rays, surface_region *out_region);
+
+/* Finds a larger part of what a region is of, where that is a strip, as a rod, a bar or a cord: the region's eight
+ * directions miss the strip's, so that little of its length is within. Changes the region only if its area grows.
+ * normal, min_cos, radius: as for surface_region_find, which has found it. Costs some 100 rays. */
+void surface_region_follow_strip(const scene *s, const clear_space *space, vec3 normal, float min_cos, float radius,
+                                 uint64_t *in_out_rays, surface_region *in_out_region);
 
 /* Returns whether surface lies below four points near the rim of the disc, a quarter turn apart: a test for edges at a
  * quarter of the search's cost, for discs in which nothing else indicates one. An edge nearer than 0.64 of the radius
@@ -44,7 +57,8 @@ bool surface_region_is_whole(const scene *s, const clear_space *space, vec3 posi
 
 bool surface_region_contains(const surface_region *region, vec3 position);
 
-/* Returns the area of the surface within radius of the centre, m^2. */
+/* Returns the area of the surface within radius of the centre, m^2. Where it ends because it bends away, that is more
+ * than the region has in the plane: of a ball, the cap whose rim is 60 degrees off has four thirds of it. */
 double surface_region_area(const surface_region *region, float radius);
 
 #endif

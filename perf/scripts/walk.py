@@ -116,7 +116,7 @@ def compare(before, now):
     for pixel in range(now.width * now.height):
         point = position(now, pixel)
         ndc = transformed(to_ndc, point)
-        if not all(map(math.isfinite, point)) or ndc[3] <= 0.0:
+        if not any(point) or not all(map(math.isfinite, point)) or ndc[3] <= 0.0:  # where nothing is seen, P is 0
             continue
         x, y = ndc[0] / ndc[3] * before.width - 0.5, ndc[1] / ndc[3] * before.height - 0.5
         column, row = math.floor(x), math.floor(y)
