@@ -49,14 +49,14 @@ static double octant_area(const surface_region *region, int octant, float radius
     const double whole = (double)AG_PI / SURFACE_REGION_SECTORS * (double)radius * (double)radius;
     if (!(square * radius * radius > 1.0f))
         return whole;
-    /* along the chord, from the point that is nearest to the centre: where the bounds meet it, and where the rim does
-     */
+    /* along the chord, from its point nearest to the centre: where the bounds meet it, and where the rim does */
     float height = 1.0f / sqrtf(square), along[2] = {-b * height, a * height};
-    float rim = sqrtf(radius * radius - height * height);
+    float rim = sqrtf(fmaxf(0.0f, radius * radius - height * height)); /* rounded, the height may be above the radius */
     float at_u = a * u[0] + b * u[1], at_v = a * v[0] + b * v[1];
     float begin = at_u > 0.0f ? (along[0] * u[0] + along[1] * u[1]) / at_u : -INFINITY;
     float end = at_v > 0.0f ? (along[0] * v[0] + along[1] * v[1]) / at_v : INFINITY;
-    const bool is_cut_first = begin + rim<0.0f, is_cut_last = end - rim> 0.0f;
+    const bool is_cut_first = begin < -rim;
+    const bool is_cut_last = rim < end;
     begin = fmaxf(begin, -rim);
     end = fminf(end, rim);
     if (!(begin < end))

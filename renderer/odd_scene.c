@@ -194,12 +194,12 @@ void odd_scene_warn(const struct ag_rendering *r)
     brightness_read(film, &b);
     double scale = noise_shown_scale(&r->settings);
     double bright_part = scale * brightness_above(&b, FEW), middle = scale * brightness_above(&b, HALF);
-    if (b.black == b.all && is_light_missing)
-        log_once(log, AG_LOG_WARNING, "odd scene", "the picture is black: no other light comes to what is in view");
-    else if ((double)(b.all - b.black) <= FEW * (double)b.all && is_inside_solid(s))
+    if ((double)(b.all - b.black) <= FEW * (double)b.all && is_inside_solid(s))
         log_once(log, AG_LOG_WARNING, "odd scene",
                  "the camera is inside of a solid: it meets the inner side of a surface in every direction, and no "
                  "light comes there");
+    else if (b.black == b.all && is_light_missing)
+        log_once(log, AG_LOG_WARNING, "odd scene", "the picture is black: no other light comes to what is in view");
     else if (b.black == b.all && shines_away(s))
         log_once(log, AG_LOG_WARNING, "odd scene",
                  "the picture is black: what shines, with %.3g W, shines away from everything that there is: a lamp is "

@@ -54,7 +54,8 @@ static void add_texture(hash128 *h, const texture *t)
     ADD(t->most);
 }
 
-/* So many value textures are hashed of every material; those after them belong to what add_principled_rest hashes. */
+/* The first value textures are hashed of every material; later ones only where they are used, so that maps which were
+ * kept before there were these stay valid. */
 enum { FIRST_VALUE_TEXTURES = 16 };
 
 /* Sheen, and roughness that has a direction. Maps of scenes without them, that were kept before there was either, stay
@@ -223,7 +224,9 @@ hash128 scene_hash_of_light(const scene *s)
     ADD(s->light_count);
     for (uint32_t i = 0; i < s->light_count; i++)
         add_light(h, &s->lights[i]);
-    ADD(s->has_motion); /* photons then have times, by a random number */
+    ADD(s->has_motion);          /* photons then have times, by a random number */
+    if (s->has_scattering_media) /* also where only the eye is in one: photons then draw numbers for their flights */
+        ADD(s->has_scattering_media);
     return begun;
 }
 

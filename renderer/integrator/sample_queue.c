@@ -69,8 +69,8 @@ static bool bound_sample(const struct ag_film *film, eye_sample *sample)
         sample->radiance = rgb_gray(0.0f);
         sample->gather_variance = sample->light_variance = sample->caustic_square = 0.0f;
         if (sample->layers) {
-            const first_hit first = sample->layers->first;
-            *sample->layers = (sample_layers){.first = first};
+            const sample_layers seen = *sample->layers;
+            *sample->layers = (sample_layers){.alpha = seen.alpha, .first = seen.first};
         }
     } else if (response->is_bounded) {
         rgb bounded = film_response_bound(response, sample->radiance);

@@ -110,10 +110,28 @@ static void not_finite_is_black(void **state)
     sample_queue_destroy(q);
 }
 
+/* A sample that is not finite has lost its light, not the surface that it met. */
+static void not_finite_keeps_its_alpha(void **state)
+{
+    (void)state;
+    sample_queue *q = sample_queue_create();
+    ag_film *film = film_of(1, AG_LAYER_ALPHA);
+    eye_sample *s = begin(q, 0, true, NAN);
+    sample_layers *layers = s->layers;
+    layers->alpha = 1.0f;
+    eye_sample_note(s, PART_EMISSION, rgb_gray(2.0f));
+    assert_int_equal(sample_queue_deliver(q, NULL, 0, film), 1);
+    assert_true(layers->alpha == 1.0f);
+    assert_true(layers->parts[PART_EMISSION].r == 0.0f);
+    ag_film_destroy(film);
+    sample_queue_destroy(q);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(full), cmocka_unit_test(gathered_light_arrives),
                                        cmocka_unit_test(gathered_light_has_its_parts),
-                                       cmocka_unit_test(not_finite_is_black)};
+                                       cmocka_unit_test(not_finite_is_black),
+                                       cmocka_unit_test(not_finite_keeps_its_alpha)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -38,6 +38,10 @@ static scene *create(test_run *r, const char *world, const char *eye)
     return s;
 }
 
+/* A world without media of its own: fog is what the eye may be in. */
+static const char EMPTY_WORLD[] = "LightSource \"point\"\nShape \"sphere\"\n";
+#define FOG "MakeNamedMedium \"fog\" \"string type\" \"homogeneous\" \"rgb sigma_s\" [1 1 1]\n"
+
 static const char CAMERA[] = "LookAt 0 0 9 0 0 0 0 1 0 Camera \"perspective\" \"float fov\" 40";
 
 static void hashes(const char *world, const char *eye, hash128 out[2])
@@ -196,6 +200,17 @@ static void test_no_word_is_forgotten(void **state)
                 {offsetof(light, as) + offsetof(source, last) + sizeof(((source *)0)->last), sizeof(light)},           \
                 {offsetof(light, as) + sizeof(vec3), kind == LIGHT_GONIOMETRIC ? 4 : 0})
 
+/* Photons draw other random numbers where any medium in use scatters, so an eye in fog makes other photon maps, though
+ * no surface touches the fog. */
+static void test_an_eye_in_fog_counts(void **state)
+{
+    (void)state;
+    hash128 outside[2], within[2];
+    hashes(EMPTY_WORLD, FOG "Camera \"perspective\"", outside);
+    hashes(EMPTY_WORLD, FOG "MediumInterface \"\" \"fog\" Camera \"perspective\"\nMediumInterface \"\" \"\"", within);
+    assert_false(hash128_is_equal(outside[0], within[0]));
+}
+
 static void test_lights(void **state)
 {
     (void)state;
@@ -311,6 +326,7 @@ int main(void)
         cmocka_unit_test(test_hash128),
         cmocka_unit_test(test_same_and_other),
         cmocka_unit_test(test_no_word_is_forgotten),
+        cmocka_unit_test(test_an_eye_in_fog_counts),
         cmocka_unit_test(test_lights),
         cmocka_unit_test(test_pixels),
     };
