@@ -3,9 +3,9 @@
  * that their results have the same bits, which tests/photonmap checks. The plain version goes photon by photon: it
  * serves processors without AVX2, and it checks the other versions, with which it shares no code. Without the AVX2
  * version a frame of the Cornell box takes 9 % more CPU time (cornell-box -t 1 --noise 0 --size 160x90 --spp 4
- * --photons 300000; median of pairs of runs, AMD EPYC); perf/README.md tells what AVX-512 brings. Rests on: Intel, "64
- * and IA-32 Architectures Optimization Reference Manual", ch. on AVX2 and on AVX-512. Flow: photon_k_nearest,
- * irradiance_estimate -> [here]. Threads: pure but for what the caller owns. */
+ * --photons 300000; median of pairs of runs, AMD EPYC); perf/README.md tells what AVX-512 brings.
+ * Rests on: Intel, "64 and IA-32 Architectures Optimization Reference Manual", ch. on AVX2 and on AVX-512.
+ * Flow: photon_k_nearest, irradiance_estimate -> [here]. Threads: pure but for what the caller owns. */
 #ifndef AFTERGLOW_DISC_KERNELS_H
 #define AFTERGLOW_DISC_KERNELS_H
 
@@ -33,6 +33,25 @@ typedef struct photon_disc {
 } photon_disc;
 
 enum { DISC_COUNTS = 3, DISC_SUBTREE_LEVELS_MAX = 4, DISC_SUBTREE_LEAVES_MAX = 1 << DISC_SUBTREE_LEVELS_MAX };
+_Static_assert((int)PHOTON_SUBTREE_LEVELS <= (int)DISC_SUBTREE_LEVELS_MAX,
+               "the plain and AVX2 kernels write as many leaves");
+
+/* The codes of normals (direction_encode) that are similar to a query's for sure. */
+typedef struct near_code_bound {
+    short middle;    /* the query's own code */
+    char most_apart; /* how far each half of a code may be from the query's */
+    bool is_any;     /* false: no other code is near enough */
+} near_code_bound;
+
+/* Where the coordinates of an octahedral code change by 1, the vector changes by the square root of 3 at the most and
+ * is nowhere shorter than 1 over that, so that the direction changes by 3 at the most. A step is 1 / 127, and each
+ * coordinate of the query's normal is half a step from its code. */
+static inline near_code_bound near_code_bound_of(const photon_query *q)
+{
+    float chord = sqrtf(2.0f - 2.0f * q->min_cos), steps = chord / 3.0f * 127.0f / 1.41422f;
+    int most = (int)(steps - 1.0f); /* half a step is for rounding */
+    return (near_code_bound){(short)direction_encode(q->normal), (char)most, steps >= 1.0f};
+}
 
 typedef struct disc_kernels {
     /* How far above the leaves the subtrees of find_leaves begin. */
@@ -103,7 +122,7 @@ extern const disc_kernels disc_kernels_plain;
 
 /* Return NULL where the compiler or the processor does not support these instructions. */
 const disc_kernels *disc_kernels_avx2(void);
-const disc_kernels *disc_kernels_avx512(void); /* F, BW, DQ and VL */
+const disc_kernels *disc_kernels_avx512(void); /* F, BW, DQ and VL, POPCNT and BMI2 */
 
 /* Returns the fastest kernels that this processor supports. */
 const disc_kernels *disc_kernels_best(void);

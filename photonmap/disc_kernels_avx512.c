@@ -137,15 +137,11 @@ typedef struct near_codes {
     uint32_t lanes;             /* 0: none is near enough */
 } near_codes;
 
-/* Where the coordinates of an octahedral code change by 1, the vector changes by the square root of 3 at the most and
- * is nowhere shorter than 1 over that, so that the direction changes by 3 at the most. A step is 1 / 127, and each
- * coordinate of the query's normal is half a step from its code. */
 AVX512 static inline near_codes near_codes_of(const photon_query *q)
 {
-    float chord = sqrtf(2.0f - 2.0f * q->min_cos), steps = chord / 3.0f * 127.0f / 1.41422f;
-    int most = (int)(steps - 1.0f); /* half a step is for rounding */
-    return (near_codes){_mm256_set1_epi16((short)direction_encode(q->normal)), _mm256_set1_epi8((char)most),
-                        steps >= 1.0f ? UINT32_MAX : 0};
+    const near_code_bound bound = near_code_bound_of(q);
+    return (near_codes){_mm256_set1_epi16(bound.middle), _mm256_set1_epi8(bound.most_apart),
+                        bound.is_any ? UINT32_MAX : 0};
 }
 
 /* Returns, as bits, those of a block's photons whose normals have such codes. */
@@ -415,7 +411,7 @@ AVX512 static uint32_t sum_in_region(const photon_disc *disc, const surface_regi
 const disc_kernels *disc_kernels_avx512(void)
 {
     static const disc_kernels KERNELS = {
-        4, find_leaves, collect, count_within, list_between, sum_on_level, sum_in_region};
+        DISC_SUBTREE_LEVELS_MAX, find_leaves, collect, count_within, list_between, sum_on_level, sum_in_region};
     bool is_there = __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
                     __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl") &&
                     __builtin_cpu_supports("popcnt") && __builtin_cpu_supports("bmi2");

@@ -46,7 +46,7 @@ extern const photon_kernels photon_kernels_plain;
 
 /* Return NULL where the compiler or the processor does not support these instructions. */
 const photon_kernels *photon_kernels_avx2(void);
-const photon_kernels *photon_kernels_avx512(void); /* F, BW, DQ and VL */
+const photon_kernels *photon_kernels_avx512(void); /* F, BW, DQ and VL, POPCNT and BMI2 */
 
 /* Returns the fastest kernels that this processor supports. */
 const photon_kernels *photon_kernels_best(void);

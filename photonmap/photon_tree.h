@@ -19,7 +19,7 @@ typedef struct photon_tree_node {
 } photon_tree_node;
 
 /* The number of the lowest levels that searches may treat as a whole; their empty parts lie beyond infinite planes. */
-enum { PHOTON_SUBTREE_LEVELS = 3, PHOTON_SUBTREE_LEAVES = 1 << PHOTON_SUBTREE_LEVELS };
+enum { PHOTON_SUBTREE_LEVELS = 3 };
 
 typedef struct photon_tree {
     photon_block *blocks;    /* borrowed */
