@@ -6,7 +6,8 @@
 #include "rays/transmittance.h"
 #include "surface_region.h"
 
-/* Photons this much higher or lower than the point, as a share of the radius, may lie on another surface. */
+/* A photon whose height above or below the tangent plane is more than this share of the radius may lie on another
+ * surface: rays tell whether the point sees it. */
 static const float LEVEL = 1.0f / 32.0f;
 
 /* Photons that crowd to one side of the disc, by more than this share of its radius on average, hint at an edge. */

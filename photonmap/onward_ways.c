@@ -22,8 +22,8 @@ static const float OUTLIER = 2.0f;
 static const float PASSING_LEAST = 0.6f, FAR = 3.0f;
 /* Factor of the radius that the lines give, since they are few, and rounded to 0.7 degrees. */
 static const float MARGIN = 1.25f;
-/* Lines that are parallel do not tell how far off they meet: each counts a little for its beginning. */
-static const double BEGINNING = 1e-6;
+/* Parallel lines have no point where they meet: each line draws a little towards its origin, so that there is one. */
+static const double ORIGIN_PULL = 1e-6;
 /* The least squared sine between two lines that tell where they meet. */
 static const float SINE_SQUARED_LEAST = 1e-4f;
 
@@ -81,7 +81,7 @@ static vec3 nearest_point(const line *lines, uint32_t count, vec3 around, float 
         const double d[3] = {(double)lines[i].direction.x, (double)lines[i].direction.y, (double)lines[i].direction.z};
         for (int r = 0; r < 3; r++)
             for (int c = 0; c < 3; c++) {
-                double entry = weight * ((r == c ? 1.0 + BEGINNING : 0.0) - d[r] * d[c]);
+                double entry = weight * ((r == c ? 1.0 + ORIGIN_PULL : 0.0) - d[r] * d[c]);
                 m[r][c] += entry;
                 b[r] += entry * x[c];
             }

@@ -13,8 +13,8 @@ enum { PHOTONS_PER_TRIAL = 8, ROUND_TRIALS_MIN = 1 << 12, ROUND_TRIALS_MAX = 1 <
  * least STARTS_LEAST. */
 enum { ROUNDS_MAX = ROUNDS + 1, STARTS_LEAST = 64 };
 enum { BLIND_ROUNDS_MAX = 8, USEFUL_LEAST = 32 };
-/* A guide that lowers the variance by less than this is not worth its weights. Nor is one where, by power alone, this
- * share of the photons is useful, and a path leaves this many useful ones. */
+/* A guide that lowers the variance by less than this factor is not used, since uneven photon weights cost more. Nor is
+ * one where, by power alone, this share of the photons is useful, and a path leaves this many useful ones. */
 static const float LEAST_GAIN = 1.5f;
 static const double ENOUGH_USEFUL = 0.5, ENOUGH_PER_PATH = 0.25;
 /* Paths are split that are worth more than SPLIT_RATIO times the tenth percentile of the useful paths' worths, and so

@@ -4,10 +4,10 @@
 #include "material/lambert.h"
 #include "medium/phase_function.h"
 
-/* The share of ways on by a surface's diffuse lobes that importons lead, where there are any. */
-static const float LED_SHARE = 0.5f;
-/* The share in a caustic map, whose photons come by ways as well that no importon tells of. */
-static const float CAUSTIC_LED_SHARE = 0.2f;
+/* Of the diffuse scatterings, the share whose direction is sampled from importons, where there are any. */
+static const float GUIDED_SHARE = 0.5f;
+/* That share in a caustic map: smaller, since much of its light takes paths that no importon has taken. */
+static const float CAUSTIC_GUIDED_SHARE = 0.2f;
 
 /* Notes the direction of the ray, and its cone. */
 static void note_arrival(scene_ray *ray, photon_arrival *at)
@@ -45,8 +45,8 @@ void photon_arrival_scatter_in_medium(const scene *s, const photon_arrival *at, 
 static float led_share(const photon_arrival *at, photon_kind kind)
 {
     if (kind == PHOTON_CAUSTIC)
-        return photon_arrival_is_rough(at) ? CAUSTIC_LED_SHARE : 0.0f;
-    return at->albedo ? LED_SHARE : LED_SHARE * bsdf_probability(&at->scattering, BSDF_GATHERED);
+        return photon_arrival_is_rough(at) ? CAUSTIC_GUIDED_SHARE : 0.0f;
+    return at->albedo ? GUIDED_SHARE : GUIDED_SHARE * bsdf_probability(&at->scattering, BSDF_GATHERED);
 }
 
 void photon_arrival_complete(const scene *s, const photon_tracing_settings *settings, photon_arrival *at)

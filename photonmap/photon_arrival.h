@@ -34,7 +34,7 @@ ray_end photon_arrival_travel(const scene *s, scene_ray *in_out_ray, rgb carried
 /* Scatters flux in the medium of the ray that has arrived there: *in_out_ray goes on from there. */
 void photon_arrival_scatter_in_medium(const scene *s, const photon_arrival *at, vec2 u, scene_ray *in_out_ray);
 
-/* Finds how the surface that was met scatters, and by which ways importons came there. */
+/* Finds how the surface that was met scatters, and the guide that importons made there, if any. */
 void photon_arrival_complete(const scene *s, const photon_tracing_settings *settings, photon_arrival *in_out_arrival);
 
 /* The point as photons are stored at it: when the shutter opens, with the normal on the side of arrival. */

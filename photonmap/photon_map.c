@@ -68,8 +68,8 @@ static int steady_exponent(int exponent)
 
 /* An irradiance photon stands for points up to this share of the largest disc's radius away. The light through the
  * nearest photon is right in the mean as long as the disc around the point that holds no photon lies within the
- * photon's own, which ends here. Where the empty disc is larger, an estimate at the point misses just what the others
- * have too much: for n photons a disc, exp(-n / 4) / 4 of n. */
+ * photon's own, which ends here. Where the empty disc is larger, an estimate at the point is too low by what estimates
+ * at other points are too high, so that the mean is right: for n photons a disc, by exp(-n / 4) / 4 of n. */
 static const float NEAREST_SHARE = 0.5f;
 
 static float nearest_reach(const photon_map *map) { return NEAREST_SHARE * map->max_radius; }

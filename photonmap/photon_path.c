@@ -9,11 +9,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Most scatterings of a path; its remaining flux is counted as truncated. */
-enum { SCATTERING_CAP = 100 };
+/* A path meets at most so many surfaces, panes included; the flux that is left is counted as truncated. */
+enum { ARRIVALS_MAX = 100 };
 /* Most parts of a path in all, by splitting at all its surfaces. */
 enum { SPLIT_MOST = 4096 };
-/* Where a surface multiplies flux, each part takes so many times what it came with. */
+/* Where a surface multiplies flux, the path is split so that the flux of no part grows by more than this factor. */
 static const float GAIN_OF_PART = 8.0f;
 /* The room that a block's first photon makes. */
 enum { PHOTONS_FIRST = 1024 };
@@ -25,8 +25,8 @@ typedef struct photon_path {
     rgb flux;
     rng random;
     uint64_t key;
-    float weight;    /* how dense such paths would be by power alone, over how dense guide and parts make them */
-    float share;     /* of the begun path, that this part has */
+    float weight;    /* density of such paths by power alone, over their density with guide and splitting */
+    float share;     /* the fraction of the path from the lamp that this part is */
     int scatterings; /* that max_scatterings bounds: by surfaces, but for panes, where they are direct; and by media */
     int in_media;    /* by media, counted on their own */
     int arrivals;    /* at surfaces, panes too */
@@ -200,7 +200,7 @@ static bool scatter(photon_tracer *t, photon_path *path, const photon_arrival *a
     rgb flux = path->flux;
     bool may_go_straight = settings->panes_are_direct && photon_arrival_is_pane(at);
     bool is_last = path->scatterings >= settings->max_scatterings;
-    if (path->arrivals >= SCATTERING_CAP || (is_last && !may_go_straight)) {
+    if (path->arrivals >= ARRIVALS_MAX || (is_last && !may_go_straight)) {
         count_flux(balance->truncated, flux);
         return false;
     }
@@ -272,7 +272,7 @@ static float root_of_onward_importance(const photon_tracer *t, const photon_arri
 static uint32_t count_parts(const photon_tracer *t, const photon_path *path, const photon_arrival *at)
 {
     const photon_tracing_settings *settings = t->settings;
-    bool is_last = path->scatterings >= settings->max_scatterings || path->arrivals >= SCATTERING_CAP;
+    bool is_last = path->scatterings >= settings->max_scatterings || path->arrivals >= ARRIVALS_MAX;
     if (is_last)
         return 1;
     float gain = photon_arrival_gain(at), parts = gain / GAIN_OF_PART;

@@ -13,7 +13,8 @@
 static const float LIFT = 1.0f / 32.0f;
 /* Where nothing stands in the way the surface is looked for this far out; beyond lie 2 % of the disc at most. */
 static const float PROBE_AT = 0.9f;
-/* Before what stands in the way it is looked for as near to that as this: a rod beside another one ends before it. */
+/* On a strip, the surface is looked for up to this share of the way to what stands in the way: a rod beside another one
+ * ends before it. */
 static const float PROBE_BEFORE = 0.98f;
 /* On strips ends are found within this share of how far they are, so that the strip's direction is known. */
 static const float FINE = 1.0f / 64.0f;
@@ -105,7 +106,7 @@ static bool meet_below(const probe *p, vec3 tangent, float lateral, float farthe
     return true;
 }
 
-/* meet_below, but for rays whose answer the clear space tells. */
+/* Returns what meet_below does, without a ray where the clear space tells the answer. */
 static bool find_below(const probe *p, vec3 tangent, float lateral, below *out)
 {
     float farthest = p->lift + sqrtf(fmaxf(0.0f, p->radius * p->radius - lateral * lateral));
@@ -243,7 +244,7 @@ static float share_that_is_there(const probe *p, const surface_region *r)
         there += is_there;
         all += is_there || find_below(p, tangent, length * p->radius, &found);
     }
-    /* one more of each, the point itself: of a binomial count that makes the mean of 1 / share right */
+    /* the centre counts too: (n + 1) / (N + 1) makes 1 / share of a binomial count nearly unbiased */
     return ((float)there + 1.0f) / ((float)all + 1.0f);
 }
 

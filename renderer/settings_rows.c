@@ -158,7 +158,8 @@ static const setting_row ROWS[] = {
               .section = "Light",
               .help = "scatterings between lamp and eye at most, up to 100 (default: roulette)",
               .manual = "Scatterings between lamp and eye at most, up to 100. By default, and at 100, Russian "
-                        "roulette alone ends the paths; a smaller number bounds scatterings in media too.",
+                        "roulette ends the paths, and surfaces scatter them no oftener than 100 times; a smaller "
+                        "number bounds scatterings in media too.",
               .is_of_photon_map = true},
      FIELD(max_depth),
      .kind = SETTING_INTEGER,

@@ -42,8 +42,8 @@ typedef struct setting_row {
     unsigned marks;
 } setting_row;
 
-/* The max_depth by which no bound of their own is asked for: roulette then ends paths, but that surfaces scatter them
- * no oftener than this. */
+/* The max_depth that asks for no bound: roulette ends paths then, and surfaces alone scatter them no oftener than
+ * this. */
 enum { DEPTH_BY_ROULETTE = 100 };
 /* Whether max_depth bounds scatterings by media too. */
 static inline bool settings_bound_media(const ag_render_settings *settings)

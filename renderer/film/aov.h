@@ -58,9 +58,9 @@ typedef enum film_view {
     VIEW_CACHE_STATE,
     VIEW_PHOTON_DISTANCE,
     VIEW_GATHER_DISTANCE,
-    VIEW_TILE_TIME
+    VIEW_TILE_TIME,
+    FILM_VIEW_COUNT
 } film_view;
-enum { FILM_VIEW_COUNT = VIEW_TILE_TIME + 1 };
 
 typedef struct film_channel {
     char name[64];

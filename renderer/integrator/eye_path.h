@@ -46,7 +46,7 @@ static inline int eye_path_scatterings_left(const transport *t, const eye_path *
     return t->settings->max_depth - path->scatterings + (t->media_are_bounded ? 0 : path->in_media);
 }
 
-/* Returns whether no more are allowed, so that the path goes on through panes alone. */
+/* Returns whether the settings allow the path no more scatterings, so that it goes on through panes alone. */
 static inline bool eye_path_is_last(const transport *t, const eye_path *path)
 {
     return eye_path_scatterings_left(t, path) <= 0 || path->in_media >= MEDIUM_SCATTERINGS_MAX;

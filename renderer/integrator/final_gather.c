@@ -7,7 +7,7 @@
 #include "rays/slab_faces.h"
 #include "rays/transmittance.h"
 
-/* Sets the random numbers of the distance that a ray goes through media apart from all others of the ray. */
+/* Key of the random stream that tells how far a gather ray goes in media, apart from the ray's other numbers. */
 static const uint64_t KEY_OF_DISTANCE = 0x64697374616e6365u;
 
 /* A gather while its rays are sent. */
@@ -36,7 +36,7 @@ static void follow(gathering *g, uint32_t number, rgb first, vertex *v)
     gather_end end;
     rgb weight, known = rgb_gray(0.0f);
     rng random = ray_random(g, number);
-    rng_next(&random); /* the number that picked the lobe by which the ray left */
+    rng_next(&random); /* skips the number that picked the lobe by which the ray left */
     uint64_t before = eye_worker_cost(g->worker);
     bool asks = gather_path_follow(g->t, g->worker, v, random, scatterings_left(g), first, g->share_seen, &known, &end,
                                    &weight);

@@ -5,7 +5,7 @@
 #include "rays/transmittance.h"
 
 /* Roulette begins after this many scatterings along one gather ray. Short rays bounce on at most so often before the
- * cache is asked: asked sooner, in a small room, it would tell of the light outside. */
+ * cache is asked: in a room smaller than an estimate's radius, the cache would return light from outside. */
 enum { ROULETTE_AFTER = 4, SHORT_BOUNCES_MAX = 64 };
 
 /* Returns direct light and caustics at a diffuse vertex, which an estimate there would contain: radiance towards v's

@@ -46,7 +46,7 @@ typedef struct eye_worker {
     arena *scratch;                        /* for neighbours; what render.c has tried out beforehand always fits */
     gather_batch *batch;                   /* of the samples under way; NULL for path tracing */
     struct sample_queue *queue;            /* those samples */
-    uint64_t cost_apart;                   /* of the detours of all samples, which eye_worker_cost leaves out */
+    uint64_t cost_apart;                   /* of what is not charged to a sample: detours of gather rays, and layers */
 } eye_worker;
 
 /* The cost of a worker's rays so far in quarters of a gather ray's time, as measured in five rooms. Detours are left

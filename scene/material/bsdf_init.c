@@ -8,7 +8,7 @@
 #include "material/slab.h"
 #include "scene.h"
 
-/* No lobe of two is picked more rarely. */
+/* No lobe that carries light is picked more rarely than this. */
 static const float PROBABILITY_MIN = 0.1f;
 
 const bsdf_lobe_type *bsdf_base_of_kind(material_kind kind) { return bsdf_lobe_types[material_type_of(kind)->base]; }

@@ -38,7 +38,7 @@ typedef struct bsdf_lobe_type {
     /* Samples a lobe that is not smooth; for flux of a diffuse lobe, in the geometric frame. NULL: always smooth. */
     bool (*sample_rough)(const bsdf *b, bsdf_transport transport, vec3 o, float u_lobe, vec2 u, vec3 *out_local);
     bool passes; /* it transmits light */
-    /* Returns whether it does so with this material. NULL: with all. */
+    /* Returns whether the lobe transmits light with this material. NULL: with all. */
     bool (*passes_with)(const material_point *m);
     /* Returns A of a diffuse lobe, whose radiance is the same in all directions, apart from t of a coat (bsdf.h). Flux
      * leaves it by the cosine to the geometric normal; the shading normal counts where flux arrives. NULL: the lobe is

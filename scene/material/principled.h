@@ -57,8 +57,8 @@ void principled_interface(const principled_point *m, float cosine, bool is_insid
 /* Returns the reflectance of the coat's facets at a cosine. */
 float principled_coat_reflectance(const principled_point *m, float cosine);
 
-/* Returns the factor of light that passes coat and sheen to and from the interface; cosines to the normal, negative:
- * inside. */
+/* Returns the factor of light that passes coat and sheen to and from the interface. Cosines are those with the
+ * normal; where one is below 0, its direction is inside the volume. */
 float principled_cover_factor(const principled_point *m, float cos_o, float cos_i);
 
 /* Returns the factor of light that passes the coat to and from the sheen; cosines to the normal. */

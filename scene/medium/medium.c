@@ -18,7 +18,7 @@ rgb medium_transmittance(const medium *m, float distance)
 
 void medium_add_hash(const medium *m, hash128 *h)
 {
-    const int roulette_after = MEDIUM_ROULETTE_AFTER; /* by another, photons are others */
+    const int roulette_after = MEDIUM_ROULETTE_AFTER; /* another beginning of roulette gives other photons */
     HASH128_ADD(h, m->sigma_a);
     HASH128_ADD(h, m->sigma_s);
     HASH128_ADD(h, m->g);

@@ -1,5 +1,5 @@
-/* medium_roulette.h: where paths of light end that media scatter ever on. Media that absorb nothing take nothing off a
- * path, so that roulette by what it carries never ends it; and where they have no bound, it never leaves them.
+/* medium_roulette.h: how paths of light end that media scatter again and again. Media that absorb nothing take nothing
+ * off a path, so that roulette by what it carries never ends it; and a path never leaves a medium without bounds.
  * Rests on: Arvo, Kirk, "Particle Transport and Image Synthesis", 1990 (Russian roulette).
  * Flow: eye paths, gather rays and photons ask here where a medium has scattered them. Threads: pure functions. */
 #ifndef AFTERGLOW_MEDIUM_ROULETTE_H
@@ -14,8 +14,9 @@ enum {
 
 /* Returns what roulette makes a path carry, in units of what it would without, behind so many scatterings by media: as
  * many times MEDIUM_ROULETTE_AFTER as there were, and at least 1. Of the paths that absorption does not end, one in
- * n / 100 then has n scatterings. Where these have no end, they are 1,030 on average; and light that comes out of a
- * white ball of 400 mean free paths varies by less than itself, since few paths stay there for long. */
+ * n / 100 then has n scatterings. In a white medium without bounds that is 1,030 scatterings a path on average. The
+ * light that comes out of a white ball of 400 mean free paths has a standard deviation below its mean, since few paths
+ * stay there for long. */
 static inline float medium_roulette_level(int scatterings)
 {
     return scatterings > MEDIUM_ROULETTE_AFTER ? (float)scatterings * (1.0f / (float)MEDIUM_ROULETTE_AFTER) : 1.0f;

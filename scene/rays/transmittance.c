@@ -77,11 +77,11 @@ static ray_end follow(const scene *s, scene_ray *ray, float length, bool through
         bool is_hit = scene_intersect(s, *ray, length, out_hit);
         float to_end = is_bounded ? distance_between(from, end) : INFINITY;
         float distance = is_hit ? distance_between(from, out_hit->position) : to_end;
-        float free;
+        float free_path;
         if (flight && ray->medium < s->medium_count &&
-            medium_flight_pass(flight, &s->media[ray->medium], distance, &free)) {
+            medium_flight_pass(flight, &s->media[ray->medium], distance, &free_path)) {
             surface_hit hit = *out_hit;
-            scatter_at(ray, from, free, is_hit ? &hit : NULL, travelled, out_hit);
+            scatter_at(ray, from, free_path, is_hit ? &hit : NULL, travelled, out_hit);
             return RAY_ENDS_IN_MEDIUM;
         }
         travelled += distance;

@@ -15,7 +15,8 @@ extern "C" {
 
 /* Layers of a picture beside its R, G and B. Their channels have the names that other renderers give them. */
 typedef enum ag_layer {
-    AG_LAYER_ALPHA = 1 << 0,    /* A: the share of the pixel that surfaces cover, [0, 1]; R, G and B include the sky */
+    AG_LAYER_ALPHA = 1 << 0,    /* A: how much of the background is hidden, [0, 1]: all by a surface, a part by media
+                                   before the sky; R, G and B include the sky */
     AG_LAYER_DEPTH = 1 << 1,    /* Z: distance of the nearest surface along the camera's axis; 1e10 without one */
     AG_LAYER_ALBEDO = 1 << 2,   /* albedo.R, G, B: of the first surface, its mirror reflectance included, [0, 1] */
     AG_LAYER_NORMAL = 1 << 3,   /* N.X, Y, Z: its shading normal on the eye's side, world space, pixel mean */

@@ -58,11 +58,11 @@ typedef struct ag_render_settings {
     float white_balance;   /* K, [1000, 25000]: daylight of this temperature (below 4000: a black body) becomes white;
                               0: none, the default */
     bool float_samples;    /* EXR files of the film hold floats where ag_output_settings leaves it open; default half */
-    int max_depth;         /* most scatterings between lamp and eye, [0, 100]; 100: roulette alone ends paths; less
-                              bounds scatterings in media too. Path tracing keeps the bound exactly. With the photon
-                              map it bounds the photon's part of a path (to max_depth - 2 before a gather ray,
-                              max_depth - 1 before a caustic) and the eye's part separately, so that there may be a
-                              few more behind mirrors and glass. */
+    int max_depth;         /* most scatterings between lamp and eye, [0, 100]; 100: roulette ends paths, and surfaces
+                              alone have the bound; less bounds scatterings in media too. Path tracing keeps the bound
+                              exactly. With the photon map it bounds the photon's part of a path (to max_depth - 2
+                              before a gather ray, max_depth - 1 before a caustic) and the eye's part separately, so
+                              that there may be a few more behind mirrors and glass. */
 
     uint64_t photon_count; /* photons to store in the global map, [1, 2^32 - 2]. Default AG_PHOTON_COUNT_AUTOMATIC:
                               two for each camera sample of the whole frame (at a level of noise, 64 samples a pixel
