@@ -37,7 +37,7 @@ ray_end photon_arrival_travel(const scene *s, scene_ray *in_out_ray, rgb carried
 void photon_arrival_scatter_in_medium(const scene *s, const photon_arrival *at, vec2 u, scene_ray *ray)
 {
     ray->origin = at->hit.position;
-    ray->direction = phase_function_sample(s->media[ray->medium].g, at->arrived, u);
+    ray->direction = phase_function_sample(&s->media[ray->medium].phase, at->arrived, u);
 }
 
 /* Returns the share of a map's ways on that importons lead: of those by diffuse lobes; of a caustic map's all, where

@@ -83,7 +83,7 @@ void bsdf_init_of(const material_point *m, const surface_hit *hit, vec3 out, bsd
 void bsdf_init_in_medium(const medium *m, vec3 out, bsdf *b)
 {
     b->material.kind = MATERIAL_INTERFACE;
-    b->material.phase = (phase_point){m->g};
+    b->material.phase = m->phase;
     b->shading = frame_from_z(out);
     b->geometric_normal = b->out = out;
     b->is_tilted = b->is_pane = false;

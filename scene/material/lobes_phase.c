@@ -7,7 +7,7 @@ static void evaluate_phase(const bsdf *b, bsdf_transport transport, vec3 directi
                            float *out_pdf)
 {
     (void)transport, (void)o, (void)i;
-    *out_pdf = phase_function_density(b->material.phase.g, -vec3_dot(b->out, direction));
+    *out_pdf = phase_function_density(&b->material.phase, -vec3_dot(b->out, direction));
     *out_value = rgb_gray(*out_pdf);
 }
 
@@ -15,7 +15,7 @@ static void evaluate_phase(const bsdf *b, bsdf_transport transport, vec3 directi
 static bool sample_phase(const bsdf *b, bsdf_transport transport, vec3 o, float u_lobe, vec2 u, vec3 *out_local)
 {
     (void)transport, (void)o, (void)u_lobe;
-    *out_local = phase_function_sample(b->material.phase.g, (vec3){0.0f, 0.0f, -1.0f}, u);
+    *out_local = phase_function_sample(&b->material.phase, (vec3){0.0f, 0.0f, -1.0f}, u);
     return true;
 }
 

@@ -7,6 +7,7 @@
 #include "material/coat.h"
 #include "material/hair.h"
 #include "material/principled.h"
+#include "medium/phase_function.h"
 
 struct scene;
 struct surface_hit;
@@ -30,11 +31,6 @@ typedef struct slab_point {
     rgb reflected, through;
 } slab_point;
 
-/* The phase function of a medium (phase_function.h). */
-typedef struct phase_point {
-    float g;
-} phase_point;
-
 typedef struct material_point {
     material_kind kind; /* never MATERIAL_MIX */
     union {
@@ -45,7 +41,7 @@ typedef struct material_point {
         principled_point principled; /* MATERIAL_PRINCIPLED */
         hair_point hair;             /* MATERIAL_HAIR; bsdf_init adds the direction to fibre and colour */
         slab_point slab;             /* for a bsdf with LOBE_SLAB, whatever the kind */
-        phase_point phase;           /* for a bsdf with LOBE_PHASE, whose kind is MATERIAL_INTERFACE */
+        phase_function phase;        /* for a bsdf with LOBE_PHASE, whose kind is MATERIAL_INTERFACE */
     };
 } material_point;
 

@@ -21,7 +21,7 @@ void medium_add_hash(const medium *m, hash128 *h)
     const int roulette_after = MEDIUM_ROULETTE_AFTER; /* another beginning of roulette gives other photons */
     HASH128_ADD(h, m->sigma_a);
     HASH128_ADD(h, m->sigma_s);
-    HASH128_ADD(h, m->g);
+    phase_function_add_hash(&m->phase, h);
     if (medium_scatters(m))
         HASH128_ADD(h, roulette_after);
 }

@@ -7,15 +7,14 @@
 #ifndef AFTERGLOW_MEDIUM_H
 #define AFTERGLOW_MEDIUM_H
 
-#include "math/hash128.h"
-#include "math/vec3.h"
+#include "medium/phase_function.h"
 
 #include <stdbool.h>
 
 typedef struct medium {
     rgb sigma_a; /* share of the light that is absorbed per unit of the way, 1 / scene unit, >= 0 and finite */
     rgb sigma_s; /* share of the light that is scattered, likewise */
-    float g;     /* mean cosine of the angle by which scattering turns light (phase_function.h), in (-1, 1) */
+    phase_function phase;
 } medium;
 
 /* Returns whether it scatters any light. */

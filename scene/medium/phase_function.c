@@ -5,8 +5,9 @@
 
 #include <math.h>
 
-float phase_function_density(float g, float cosine)
+float phase_function_density(const phase_function *phase, float cosine)
 {
+    const float g = phase->g;
     /* 1 + g^2 - 2 g cosine, without loss where the angle is small and g near 1 */
     float near = 1.0f - fabsf(g), square = near * near + 2.0f * fabsf(g) * (1.0f - (g < 0.0f ? -cosine : cosine));
     square = fmaxf(square, near * near);
@@ -21,10 +22,12 @@ static float sample_cosine(float g, float u)
     return fminf(fmaxf(cosine, -1.0f), 1.0f);
 }
 
-vec3 phase_function_sample(float g, vec3 along, vec2 u)
+vec3 phase_function_sample(const phase_function *phase, vec3 along, vec2 u)
 {
-    float cosine = sample_cosine(g, u.x), sine = sqrtf(fmaxf(0.0f, 1.0f - cosine * cosine)), s, c;
+    float cosine = sample_cosine(phase->g, u.x), sine = sqrtf(fmaxf(0.0f, 1.0f - cosine * cosine)), s, c;
     sincos_turns(u.y, &s, &c);
     frame f = frame_from_z(along);
     return vec3_normalize(frame_to_world(&f, (vec3){sine * c, sine * s, cosine}));
 }
+
+void phase_function_add_hash(const phase_function *phase, hash128 *h) { HASH128_ADD(h, phase->g); }

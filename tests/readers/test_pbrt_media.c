@@ -60,7 +60,7 @@ static void scattering_is_read(void **state)
         reading r = reading_of(text);
         const medium *m = &r.scene->media[0];
         assert_rgb(m->sigma_s, CASES[i].r, CASES[i].g, CASES[i].b, 1e-4);
-        assert_true((double)m->g == CASES[i].mean_cosine);
+        assert_true((double)m->phase.g == CASES[i].mean_cosine);
         assert_int_equal(medium_scatters(m), CASES[i].b > 0);
         reading_destroy(&r);
     }

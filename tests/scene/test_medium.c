@@ -8,7 +8,7 @@
 #include "medium/phase_function.h"
 #include "rays/transmittance.h"
 
-static const medium FOG = {.sigma_a = {0.1f, 0.4f, 0.0f}, .sigma_s = {0.5f, 0.2f, 2.0f}, .g = 0.0f};
+static const medium FOG = {.sigma_a = {0.1f, 0.4f, 0.0f}, .sigma_s = {0.5f, 0.2f, 2.0f}, .phase = {0.0f}};
 static const medium TEA = {.sigma_a = {0.3f, 0.0f, 1.0f}};
 static const medium MIST = {.sigma_s = {0.0f, 1.0f, 0.25f}};
 
@@ -152,10 +152,11 @@ static void phase_function_is_normalized(void **state)
     (void)state;
     enum { STEPS = 200000 };
     for (int i = 0; i < GS_COUNT; i++) {
+        const phase_function phase = {GS[i]};
         double sum = 0.0, cosine_sum = 0.0, forward = GS[i] >= 0.0f ? 1.0 : -1.0;
         for (int k = 0; k < STEPS; k++) {
             double x = (k + 0.5) / STEPS, cosine = forward * (1.0 - 2.0 * x * x * x);
-            double density = (double)phase_function_density(GS[i], (float)cosine);
+            double density = (double)phase_function_density(&phase, (float)cosine);
             sum += density * 2.0 * PI * 6.0 * x * x / STEPS;
             cosine_sum += density * cosine * 2.0 * PI * 6.0 * x * x / STEPS;
         }
@@ -163,19 +164,20 @@ static void phase_function_is_normalized(void **state)
         assert_close(cosine_sum, (double)GS[i], 2e-3);
         /* the formula itself, where it loses nothing */
         double g = GS[i], square = 1.0 + g * g - 2.0 * g * 0.25;
-        assert_relative(phase_function_density(GS[i], 0.25f), (1.0 - g * g) / (4.0 * PI * square * sqrt(square)), 1e-5);
+        assert_relative(phase_function_density(&phase, 0.25f), (1.0 - g * g) / (4.0 * PI * square * sqrt(square)),
+                        1e-5);
     }
 }
 
 typedef struct turned {
-    float g;
+    phase_function phase;
     vec3 along;
 } turned;
 
 static double density_of(void *user, vec3 direction)
 {
     const turned *t = user;
-    return (double)phase_function_density(t->g, vec3_dot(t->along, direction));
+    return (double)phase_function_density(&t->phase, vec3_dot(t->along, direction));
 }
 
 static void phase_function_is_sampled_by_its_density(void **state)
@@ -186,19 +188,19 @@ static void phase_function_is_sampled_by_its_density(void **state)
         static uint32_t counts[BIN_COUNT];
         static double bins[BIN_COUNT];
         rng random = test_random((uint64_t)i);
-        turned t = {GS[i], random_direction(&random)};
+        turned t = {{GS[i]}, random_direction(&random)};
         double cosine_sum = 0.0;
         memset(counts, 0, sizeof counts);
         for (int k = 0; k < SAMPLES; k++) {
-            vec3 d = phase_function_sample(t.g, t.along, rng_vec2(&random));
+            vec3 d = phase_function_sample(&t.phase, t.along, rng_vec2(&random));
             assert_close(vec3_length(d), 1.0, 1e-6);
             counts[direction_bin(d)]++;
             cosine_sum += (double)vec3_dot(d, t.along) / SAMPLES;
         }
-        assert_close(cosine_sum, (double)t.g, 4.0 * sqrt((1.0 - (double)(t.g * t.g)) / SAMPLES) + 1e-5);
-        if (fabsf(t.g) < 0.95f) { /* midpoints cannot integrate a sharper one */
+        assert_close(cosine_sum, (double)GS[i], 4.0 * sqrt((1.0 - (double)(GS[i] * GS[i])) / SAMPLES) + 1e-5);
+        if (fabsf(GS[i]) < 0.95f) { /* midpoints cannot integrate a sharper one */
             assert_close(integrate_bins(density_of, &t, 16, bins), 1.0, 2e-2);
-            assert_chi_square(counts, bins, SAMPLES, fabsf(t.g) > 0.8f ? 0.02 : 1e-3);
+            assert_chi_square(counts, bins, SAMPLES, fabsf(GS[i]) > 0.8f ? 0.02 : 1e-3);
         }
     }
 }
@@ -211,7 +213,7 @@ static void bsdf_in_a_medium_is_the_phase_function(void **state)
     rng random = test_random(77);
     for (int i = 0; i < GS_COUNT; i++) {
         medium m = FOG;
-        m.g = GS[i];
+        m.phase.g = GS[i];
         vec3 out = random_direction(&random);
         bsdf b;
         bsdf_init_in_medium(&m, out, &b);
@@ -226,7 +228,7 @@ static void bsdf_in_a_medium_is_the_phase_function(void **state)
                 assert_true(bsdf_sample_direction(&b, BSDF_ALL, TRANSPORTS[t], 0.5f, u, &next));
                 assert_true(next.group == BSDF_TRACED && !next.is_delta && !next.is_straight);
                 assert_close(next.weight.r, 1.0, 1e-6);
-                float density = phase_function_density(m.g, -vec3_dot(out, next.direction));
+                float density = phase_function_density(&m.phase, -vec3_dot(out, next.direction));
                 assert_true(next.pdf_solid_angle == density);
                 assert_true(bsdf_pdf(&b, BSDF_TRACED, TRANSPORTS[t], next.direction) == density);
                 assert_true(bsdf_evaluate(&b, BSDF_ALL, TRANSPORTS[t], next.direction).g == density);

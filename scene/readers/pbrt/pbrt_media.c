@@ -69,8 +69,8 @@ static ag_status read_homogeneous(pbrt_parser *parser, parameter_list *list, med
         sigma_s = working_space_light(&parser->scene->space, sigma_s);
     }
     AG_TRY(read_scale(parser, list, &scale));
-    AG_TRY(parameter_get_float(list, parser->log, "g", &m->g));
-    if (!(fabsf(m->g) < 1.0f))
+    AG_TRY(parameter_get_float(list, parser->log, "g", &m->phase.g));
+    if (!(fabsf(m->phase.g) < 1.0f))
         return pbrt_refuse(parser, list, "g", "\"g\" should be more than -1 and less than 1");
     AG_TRY(tell_emission(parser, list));
     parameter_list_warn_unused(list, parser->log);
@@ -202,7 +202,7 @@ static ag_status find_or_reserve(pbrt_parser *parser, const char *name, file_loc
         parser->named_media = larger;
     }
     pbrt_named_medium added = {.where = where};
-    const medium nothing = {.g = 0.0f};
+    const medium nothing = {.phase = {0.0f}};
     AG_TRY(scene_add_medium(parser->scene, &nothing, &added.index));
     added.name = strdup(name);
     if (!added.name || name_table_set(&parser->medium_names, name, (uint32_t)count)) {
@@ -224,7 +224,7 @@ static ag_status make_named(pbrt_parser *parser, parameter_list *list)
         return pbrt_error(parser, list->where, strlen("MakeNamedMedium"),
                           "medium \"%s\" is made twice, first at %s:%d:%d", list->name, named->where.file,
                           named->where.line, named->where.column);
-    medium made = {.g = 0.0f};
+    medium made = {.phase = {0.0f}};
     AG_TRY(read_medium(parser, list, &made));
     parser->scene->media[named->index] = made;
     named->is_defined = true;
