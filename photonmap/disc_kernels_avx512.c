@@ -5,9 +5,7 @@
 
 #if defined(__x86_64__)
 
-#include <immintrin.h>
-
-#define AVX512 __attribute__((target("avx512f,avx512bw,avx512dq,avx512vl,popcnt,bmi2")))
+#include "avx512.h"
 
 enum { WIDTH = PHOTON_BLOCK_LANES };
 _Static_assert((int)WIDTH == 16, "a vector is a leaf");
@@ -30,10 +28,6 @@ AVX512 static inline __m512 dot(vec3_16 a, vec3_16 b)
     return _mm512_add_ps(_mm512_add_ps(_mm512_mul_ps(a.x, b.x), _mm512_mul_ps(a.y, b.y)), _mm512_mul_ps(a.z, b.z));
 }
 AVX512 static inline __m512 negate(__m512 a) { return _mm512_xor_ps(a, _mm512_set1_ps(-0.0f)); }
-AVX512 static inline __m512i each_lane(void)
-{
-    return _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
-}
 
 /* direction_decode_unnormalized of a leaf's photons. */
 AVX512 static inline vec3_16 decode(const uint16_t codes[PHOTON_BLOCK_LANES])
@@ -81,7 +75,7 @@ AVX512 static uint32_t find_leaves(const photon_query *q, photon_subtree subtree
     __m512i seven = _mm512_inserti64x4(_mm512_castsi256_si512(three),
                                        _mm256_loadu_si256((const __m256i *)(const void *)&nodes[third]), 1);
     __m512i eight = _mm512_loadu_si512(&nodes[fourth]);
-    const __m512i even = _mm512_slli_epi32(each_lane(), 1);
+    const __m512i even = _mm512_slli_epi32(avx512_lanes(), 1);
     __m512 split = _mm512_castsi512_ps(_mm512_permutex2var_epi32(seven, even, eight));
     __m512i axis = _mm512_permutex2var_epi32(seven, _mm512_or_si512(even, _mm512_set1_epi32(1)), eight);
 
@@ -94,7 +88,7 @@ AVX512 static uint32_t find_leaves(const photon_query *q, photon_subtree subtree
     vec3_16 offset = {_mm512_set1_ps(subtree.offset[0]), _mm512_set1_ps(subtree.offset[1]),
                       _mm512_set1_ps(subtree.offset[2])};
     for (uint32_t level = 0; level < 4; level++) {
-        __m512i node = _mm512_srli_epi32(_mm512_or_si512(each_lane(), _mm512_set1_epi32(16)), 4 - level);
+        __m512i node = _mm512_srli_epi32(_mm512_or_si512(avx512_lanes(), _mm512_set1_epi32(16)), 4 - level);
         __m512 there = _mm512_permutexvar_ps(node, off);
         uint32_t is_other = to_leaves(is_right, level) ^ RIGHT[level];
         uint32_t along_y = to_leaves(is_y, level), along_z = to_leaves(is_z, level);
@@ -108,7 +102,7 @@ AVX512 static uint32_t find_leaves(const photon_query *q, photon_subtree subtree
     if (!(nodes[first].split < INFINITY))
         is_met &= 0x00ff; /* the planes beyond need not be at infinity, too: of so many levels the tree says nothing */
     uint32_t base = 2 * fourth + 1 - ((1u << q->tree->depth) - 1);
-    return store_some(out_leaves, _mm512_add_epi32(_mm512_set1_epi32((int)base), each_lane()), (__mmask16)is_met);
+    return store_some(out_leaves, _mm512_add_epi32(_mm512_set1_epi32((int)base), avx512_lanes()), (__mmask16)is_met);
 }
 
 /* Returns, as bits, photon_query_has_similar_normal of a block's photons, and writes the least distance of the other
@@ -207,7 +201,7 @@ AVX512 static void count_within(const photon_found *f, const float most[DISC_COU
 AVX512 static uint32_t list_between(const photon_found *f, float low, float high, photon_neighbor *out_neighbors)
 {
     const __m512 least = _mm512_set1_ps(low), most = _mm512_set1_ps(high);
-    const __m512i lanes = each_lane();
+    const __m512i lanes = avx512_lanes();
     const __m512i first = _mm512_setr_epi32(0, 16, 1, 17, 2, 18, 3, 19, 4, 20, 5, 21, 6, 22, 7, 23);
     const __m512i second = _mm512_add_epi32(first, _mm512_set1_epi32(8));
     const uint32_t leaves = f->leaf_count;
@@ -412,10 +406,7 @@ const disc_kernels *disc_kernels_avx512(void)
 {
     static const disc_kernels KERNELS = {
         DISC_SUBTREE_LEVELS_MAX, find_leaves, collect, count_within, list_between, sum_on_level, sum_in_region};
-    bool is_there = __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
-                    __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl") &&
-                    __builtin_cpu_supports("popcnt") && __builtin_cpu_supports("bmi2");
-    return is_there ? &KERNELS : NULL;
+    return avx512_is_there() ? &KERNELS : NULL;
 }
 
 #else

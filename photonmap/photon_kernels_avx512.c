@@ -4,9 +4,7 @@
 
 #if defined(__x86_64__)
 
-#include <immintrin.h>
-
-#define AVX512 __attribute__((target("avx512f,avx512bw,avx512dq,avx512vl,popcnt,bmi2")))
+#include "avx512.h"
 
 enum { WIDTH = 16 };
 
@@ -15,15 +13,10 @@ typedef struct nodes_16 {
     __m512i axis;
 } nodes_16;
 
-AVX512 static inline __m512i each_lane(void)
-{
-    return _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
-}
-
 /* Pairs of a split and an axis, in two vectors, as columns. */
 AVX512 static inline nodes_16 to_columns(__m512i low, __m512i high)
 {
-    const __m512i even = _mm512_slli_epi32(each_lane(), 1), odd = _mm512_or_si512(even, _mm512_set1_epi32(1));
+    const __m512i even = _mm512_slli_epi32(avx512_lanes(), 1), odd = _mm512_or_si512(even, _mm512_set1_epi32(1));
     return (nodes_16){_mm512_castsi512_ps(_mm512_permutex2var_epi32(low, even, high)),
                       _mm512_permutex2var_epi32(low, odd, high)};
 }
@@ -58,7 +51,7 @@ AVX512 static void find_leaves(const photon_tree *tree, const float *positions, 
 {
     enum { VECTORS = 4, AT_ONCE = VECTORS * WIDTH, HIGHEST = 5 /* levels, of 2^HIGHEST - 1 nodes */ };
     const __m512i base = _mm512_set1_epi32((int)(1u << tree->depth) - 1);
-    const __m512i offset = _mm512_mullo_epi32(each_lane(), _mm512_set1_epi32((int)stride));
+    const __m512i offset = _mm512_mullo_epi32(avx512_lanes(), _mm512_set1_epi32((int)stride));
     const uint32_t highest = tree->depth < HIGHEST ? 0 : HIGHEST;
     uint32_t i = 0;
     nodes_16 high[2] = {{_mm512_setzero_ps(), _mm512_setzero_si512()}, {_mm512_setzero_ps(), _mm512_setzero_si512()}};
@@ -193,10 +186,7 @@ AVX512 static void scan(const photon_block *blocks, const photon_reach *reach, c
 const photon_kernels *photon_kernels_avx512(void)
 {
     static const photon_kernels KERNELS = {find_leaves, meet_plane, descend, scan};
-    bool is_there = __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
-                    __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl") &&
-                    __builtin_cpu_supports("popcnt") && __builtin_cpu_supports("bmi2");
-    return is_there ? &KERNELS : NULL;
+    return avx512_is_there() ? &KERNELS : NULL;
 }
 
 #else

@@ -19,8 +19,8 @@ static const float PROBE_BEFORE = 0.98f;
 /* On strips ends are found within this share of how far they are, so that the strip's direction is known. */
 static const float FINE = 1.0f / 64.0f;
 enum { BISECTIONS = 7, BISECTIONS_MOST = 12, FOOT_TRIALS = 3 };
-/* What falls by less than this share of the way is flat: its area is right within 0.04 %. The plane that a clear space
- * is bounded by is level if the cosine says so. */
+/* A surface that falls by less than this share of the way is taken as flat: its area is right within 0.04 %. The plane
+ * that bounds a clear space is level if the cosine between the normals is above FLAT_COS. */
 static const float FLAT_SLOPE = 0.02f, FLAT_COS = 0.9999f;
 /* Normals are alike up to 60 degrees, and the tangent of half of it is this; a bend that runs across the tangent is
  * told no better than by this cosine. */
@@ -78,7 +78,8 @@ static bool find_foot(probe *p, vec3 position, vec3 normal, surface_hit *out_foo
     return false;
 }
 
-/* What a probe has found below: nothing is known of it where a clear space has told that it is there. */
+/* The surface that a probe has found below. Nothing is known of it where no ray has met it, but a clear space has told
+ * that it is there. */
 typedef struct below {
     bool is_met; /* by a ray */
     bool has_holes;

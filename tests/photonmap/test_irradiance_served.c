@@ -307,19 +307,28 @@ static void points_receive_what_is_there(void **state)
     test_run_reset(&r);
 }
 
+/* Makes a map of the photons, whose estimates have the case's radius. Returns the scratch of its searches. */
+static photon_neighbor *make_seen_map(test_run *r, const scene *s, const served_case *c, photon_set *in_out_set,
+                                      photon_map *out_map)
+{
+    enum { NEAREST = 50 };
+    photon_map_settings settings = {
+        .nearest = NEAREST, .max_radius = c->radius, .surface_area = s->surface_area, .surfaces = s};
+    assert_int_equal(photon_map_create(&r->run, in_out_set, &settings, 0.0, 1.0, out_map), AG_OK);
+    photon_neighbor *scratch = malloc(photon_map_scratch_count(out_map) * sizeof *scratch);
+    assert_non_null(scratch);
+    return scratch;
+}
+
 /* The mean over the case's surfaces of what is seen there, over the truth; *out_whole_disc: where the whole disc
  * answers for surfaces that are too small; *out_largest: the largest, over the largest irradiance. */
 static double see(test_run *r, const scene *s, const served_case *c, double photons_a_disc, double least_share,
                   uint64_t seed, double *out_whole_disc, double *out_largest)
 {
-    enum { POINTS = 20000, NEAREST = 50 };
+    enum { POINTS = 20000 };
     photon_set set = draw_photons(s, c, photons_a_disc, 2 * seed);
     photon_map map;
-    photon_map_settings settings = {
-        .nearest = NEAREST, .max_radius = c->radius, .surface_area = s->surface_area, .surfaces = s};
-    assert_int_equal(photon_map_create(&r->run, &set, &settings, 0.0, 1.0, &map), AG_OK);
-    photon_neighbor *scratch = malloc(photon_map_scratch_count(&map) * sizeof *scratch);
-    assert_non_null(scratch);
+    photon_neighbor *scratch = make_seen_map(r, s, c, &set, &map);
     point_series p = {.s = s, .c = c, .random = test_random(2 * seed + 1)};
     const double least_area = least_share * PI * (double)c->radius * (double)c->radius;
     double seen = 0.0, whole_disc = 0.0, truth = 0.0, largest = 0.0;
@@ -450,18 +459,14 @@ static photon_set draw_beam(const scene *s, const served_case *c, vec3 direction
 static double see_flux(test_run *r, const scene *s, const served_case *c, double area, double photons_a_disc,
                        vec3 direction, uint64_t seed)
 {
-    enum { POINTS = 5000, NEAREST = 50 };
+    enum { POINTS = 5000 };
     static const double LEAST_SHARE_SEEN = 0.01;
     const double disc = PI * (double)c->radius * (double)c->radius;
     uint64_t lines = (uint64_t)(photons_a_disc * PI * (double)c->reach * (double)c->reach / disc);
     photon_set set = draw_beam(s, c, direction, lines, 2 * seed);
     double flux = PI * (double)c->reach * (double)c->reach * (double)set.count / (double)lines;
     photon_map map;
-    photon_map_settings settings = {
-        .nearest = NEAREST, .max_radius = c->radius, .surface_area = s->surface_area, .surfaces = s};
-    assert_int_equal(photon_map_create(&r->run, &set, &settings, 0.0, 1.0, &map), AG_OK);
-    photon_neighbor *scratch = malloc(photon_map_scratch_count(&map) * sizeof *scratch);
-    assert_non_null(scratch);
+    photon_neighbor *scratch = make_seen_map(r, s, c, &set, &map);
     point_series p = {.s = s, .c = c, .random = test_random(2 * seed + 1)};
     double seen = 0.0;
     uint64_t rays = 0;
