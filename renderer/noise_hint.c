@@ -14,10 +14,11 @@ static const double NEGLIGIBLE = 0.002;
 /* A sky that lights a smaller share of the samples than this comes in by windows. */
 static const double FEW_WINDOWS = 0.4;
 
+/* Whether a sky comes from everywhere: its samples know nothing of windows. */
 static bool has_open_sky(const scene *s)
 {
     for (uint32_t i = 0; i < s->infinite_light_count; i++)
-        if (!s->lights[s->infinite_lights[i]].as.infinite.portal)
+        if (light_has_direction_numbers(&s->lights[s->infinite_lights[i]]))
             return true;
     return false;
 }

@@ -198,10 +198,8 @@ static ag_status add_lamp(scene *s, const view *v, log_sink *log)
         lamp.as.point.position = middle;
     const surroundings around = look_around(s, lamp.as.point.position);
     lamp.as.point.intensity = rgb_gray(IRRADIANCE * around.distance_squared);
-    if (around.enclosed == 1.0f) {
-        scene_drop_lights(s, LIGHT_INFINITE);
-        scene_drop_lights(s, LIGHT_DISTANT);
-    }
+    if (around.enclosed == 1.0f)
+        scene_drop_lights(s, light_is_everywhere);
     log_message(log, AG_LOG_INFO, "a sun outside does not light a closed room: a lamp of %.3g W at (%g, %g, %g) does",
                 4.0 * 3.14159265358979323846 * (double)lamp.as.point.intensity.g, (double)lamp.as.point.position.x,
                 (double)lamp.as.point.position.y, (double)lamp.as.point.position.z);

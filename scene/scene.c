@@ -288,13 +288,13 @@ ag_status scene_add_light(scene *s, const light *item, uint32_t *out_index)
     return AG_OK;
 }
 
-/* Drops the lights of a kind, or all. The others keep their order, and shapes learn their new index. */
-static void drop_lights(scene *s, light_kind kind, bool is_any_kind)
+/* The lights that stay keep their order, and shapes learn their new index. */
+void scene_drop_lights(scene *s, bool (*is_dropped)(const light *l))
 {
     uint32_t kept = 0;
     for (uint32_t i = 0; i < s->light_count; i++) {
         light *l = &s->lights[i];
-        const bool is_kept = !is_any_kind && l->kind != kind;
+        const bool is_kept = is_dropped && !is_dropped(l);
         if (l->kind == LIGHT_AREA)
             s->shapes[l->as.area.shape_index].light_index = is_kept ? kept : SHAPE_NO_LIGHT;
         if (is_kept)
@@ -304,10 +304,6 @@ static void drop_lights(scene *s, light_kind kind, bool is_any_kind)
     }
     s->light_count = kept;
 }
-
-void scene_drop_lights(scene *s, light_kind kind) { drop_lights(s, kind, false); }
-
-void scene_drop_all_lights(scene *s) { drop_lights(s, LIGHT_AREA, true); }
 
 /* Beyond this a float overflows when squared. */
 static const float REACH_MAX = 1e18f;

@@ -90,7 +90,7 @@ typedef struct scene {
     float detail_radius; /* 0: there are no such */
     float surface_area;  /* m^2, of all shapes where photons may lie: but interfaces and curves, in all instances */
     rgb light_power;     /* W, of all lights */
-    uint32_t *infinite_lights; /* [infinite_light_count], indices of those of kind LIGHT_INFINITE */
+    uint32_t *infinite_lights; /* [infinite_light_count], indices of those that light_is_sky */
     uint32_t infinite_light_count;
     bool filters_textures;     /* any of them: see material_mips.h */
     bool has_scattering_media; /* eye, lamps or shapes are in media that scatter: see transmittance_travel */
@@ -99,7 +99,7 @@ typedef struct scene {
     /* Data for picking lights: see light_pick.c. */
     uint32_t lit_count;          /* lights with power */
     uint32_t only_light;         /* where there is but one of them, that one */
-    uint32_t *everywhere_lights; /* [everywhere_count], indices of distant and infinite ones with power */
+    uint32_t *everywhere_lights; /* [everywhere_count], indices of those with power that light_is_everywhere */
     uint32_t everywhere_count;
     struct light_tree *light_tree; /* over the others with power; NULL where there is none */
     float *photon_cdf;             /* [light_count], running sum of photon_probability */
@@ -142,9 +142,9 @@ ag_status scene_add_instance(scene *s, uint32_t object_index, const affine *step
  * here. The scene takes over a light's pictures and tables, on failure too, when they are destroyed. */
 ag_status scene_add_light(scene *s, const light *item, uint32_t *out_index);
 
-/* Drop the lights of one kind, or all of them; their shapes stay, without emission. To be called before the commit. */
-void scene_drop_lights(scene *s, light_kind kind);
-void scene_drop_all_lights(scene *s);
+/* Drops the lights of which is_dropped returns true, or all of them where it is NULL; their shapes stay, without
+ * emission. To be called before the commit. */
+void scene_drop_lights(scene *s, bool (*is_dropped)(const light *l));
 
 /* Completes the scene: areas, powers, bounds and the BVH, on the run's threads alone. isa: Embree's name of the widest
  * instruction set to use ("sse2", "sse4.2", "avx", "avx2", "avx512"), NULL for "avx2". A scene without shapes is valid.

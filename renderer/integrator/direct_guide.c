@@ -1,20 +1,17 @@
 /* direct_guide.c: see direct_guide.h. */
 #include "integrator/direct_guide.h"
 
-#include "light/environment.h"
 #include "light/light_tree.h"
 
 #include <stdlib.h>
 
 static const float BELOW_ONE = 0x1.fffffep-1f;
 
-static bool has_histogram(const light *l) { return l->kind == LIGHT_INFINITE && !l->as.infinite.portal; }
-
 bool direct_guide_serves(const scene *s)
 {
     if (s->everywhere_count == 0 || s->everywhere_count >= DIRECT_GUIDE_SHARES_MAX)
         return false;
-    return s->lit_count > 1 || has_histogram(&s->lights[s->only_light]);
+    return s->lit_count > 1 || light_has_direction_numbers(&s->lights[s->only_light]);
 }
 
 /* --- cells --- */
@@ -88,9 +85,9 @@ static void count_shares(const scene *s, direct_guide *g)
 {
     g->share_count = s->everywhere_count + (s->light_tree != NULL);
     for (uint32_t i = 0; i < s->everywhere_count; i++)
-        g->histogram_count += has_histogram(&s->lights[s->everywhere_lights[i]]);
+        g->histogram_count += light_has_direction_numbers(&s->lights[s->everywhere_lights[i]]);
     for (uint32_t i = 0, next = 0; i <= s->everywhere_count; i++) {
-        bool has = i < s->everywhere_count && has_histogram(&s->lights[s->everywhere_lights[i]]);
+        bool has = i < s->everywhere_count && light_has_direction_numbers(&s->lights[s->everywhere_lights[i]]);
         g->histogram_of[i] = has ? next++ : g->histogram_count;
     }
 }
@@ -283,7 +280,7 @@ float direct_guide_density(const direct_guide *g, const scene *s, uint32_t cell,
 {
     const direct_histogram *h = histogram_of(g, s, cell, light_index);
     vec2 u;
-    if (!h || !environment_sample_whole_numbers(&s->lights[light_index].as.infinite.radiance, direction, &u))
+    if (!h || !light_direction_numbers(&s->lights[light_index], direction, &u))
         return 1.0f;
     uint32_t column = (uint32_t)(u.x * DIRECT_GUIDE_SIDE), row = (uint32_t)(u.y * DIRECT_GUIDE_SIDE);
     return density_of(h, row, column);

@@ -1,7 +1,6 @@
 /* direct_lighting.c: see direct_lighting.h. */
 #include "integrator/direct_lighting.h"
 
-#include "light/infinite_light.h"
 #include "math/sampling.h"
 #include "rays/transmittance.h"
 
@@ -100,13 +99,13 @@ rgb direct_light_escaped(const transport *t, vec3 from, vec3 normal, vec3 direct
     for (uint32_t i = 0; i < s->infinite_light_count; i++) {
         uint32_t index = s->infinite_lights[i];
         const light *l = &s->lights[index];
-        rgb radiance = infinite_light_radiance(l, from, direction);
+        rgb radiance = light_escaped_radiance(l, from, direction);
         if (rgb_is_black(radiance))
             continue;
         float weight = 1.0f;
         if (pdf_solid_angle > 0.0f)
             weight = mis_power(scatter_count, pdf_solid_angle, (float)lamp_count,
-                               lamp_factor(t, from, normal, index, direction) * infinite_light_pdf(l, from, direction));
+                               lamp_factor(t, from, normal, index, direction) * light_escaped_pdf(l, from, direction));
         sum = rgb_add(sum, rgb_scale(radiance, weight));
         add_to_group(by_group, l, rgb_scale(radiance, weight));
     }
@@ -153,7 +152,7 @@ static light_sums sample_lamps(const transport *t, eye_worker *worker, const ver
         if (rgb_is_black(sample.radiance))
             continue;
         const light *lamp = &t->s->lights[sample.lamp];
-        if (lamp->kind == LIGHT_INFINITE)
+        if (light_is_sky(lamp))
             *in_out_sky = rgb_add(*in_out_sky, rgb_scale(sample.radiance, share));
         add_to_group(by_group, lamp, rgb_scale(sample.radiance, share));
     }

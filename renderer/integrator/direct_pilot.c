@@ -3,7 +3,6 @@
 
 #include "integrator/direct_lighting.h"
 #include "integrator/eye_pilot.h"
-#include "light/environment.h"
 #include "light/light_tree.h"
 #include "parallel_for.h"
 #include "status.h"

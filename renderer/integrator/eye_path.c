@@ -149,8 +149,8 @@ void eye_path_add_direct(const transport *t, eye_worker *worker, const eye_path 
     part_shares parts;
     if (path->wants_parts)
         parts = shares_behind_vertex(&path->parts, v, lobes, direct.direction);
-    float kept = add_light(sample, path, path->wants_parts ? &parts : NULL, path->scatterings + 1, brought,
-                           lamp->kind == LIGHT_INFINITE);
+    float kept =
+        add_light(sample, path, path->wants_parts ? &parts : NULL, path->scatterings + 1, brought, light_is_sky(lamp));
     if (t->wants_groups)
         eye_sample_add_group(sample, lamp->group, rgb_scale(brought, kept));
 }

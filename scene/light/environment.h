@@ -56,7 +56,7 @@ void environment_uv_at(const environment *e, vec3 direction, uint32_t *out_x, ui
  * over it. */
 vec3 environment_direction(const environment *e, uint32_t x, uint32_t y, vec2 within);
 
-/* The functions below ignore portals, which infinite_light.h looks at. They serve LIGHT_GONIOMETRIC too: intensity,
+/* The functions below ignore portals, which infinite_light.c looks at. They serve goniometric lights too: intensity,
  * W/sr, by directions that leave the light. Directions are in world space, unit, towards an infinite light. */
 
 /* Returns radiance, W/m^2/sr. */

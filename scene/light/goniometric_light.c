@@ -6,6 +6,8 @@
 
 static void init(light *l) { l->as.goniometric.intensity = light_directions_make(); }
 
+static environment *picture(const light *l) { return l->as.goniometric.intensity.picture; }
+
 static void reset(light *l) { environment_destroy(l->as.goniometric.intensity.picture); }
 
 static void add_hash(const light *l, hash128 *h)
@@ -51,6 +53,7 @@ const light_type goniometric_light = {.init = init,
                                       .add_hash = add_hash,
                                       .power = power,
                                       .intensity = intensity,
+                                      .picture = picture,
                                       .sample_from_point = light_sample_of_point,
                                       .emit = emit,
                                       .emission_numbers_of = emission_numbers_of,

@@ -1,8 +1,6 @@
-/* infinite_light.c: see infinite_light.h; and the kind of light: from infinitely far away in all directions, from
- * everywhere or through a portal. environment.c has its radiance.
+/* infinite_light.c: light from infinitely far away in all directions, from everywhere or through a portal: then it
+ * reaches only what sees through the portal. environment.c has its radiance.
  * Rests on: Pharr, Jakob, Humphreys, "Physically Based Rendering", 4th ed., 2023, 12.5. Threads: read-only. */
-#include "light/infinite_light.h"
-
 #include "light/environment.h"
 #include "light/light_type.h"
 #include "light/portal.h"
@@ -39,18 +37,27 @@ static rgb power(const scene *s, const light *l)
                                  : rgb_scale(environment_integral(&l->as.infinite.radiance), disc);
 }
 
-rgb infinite_light_radiance(const light *l, vec3 point, vec3 direction)
+static rgb escaped_radiance(const light *l, vec3 point, vec3 direction)
 {
     if (l->as.infinite.portal && !portal_is_crossed(l->as.infinite.portal, point, direction))
         return rgb_gray(0.0f);
     return environment_whole_radiance(&l->as.infinite.radiance, direction);
 }
 
-float infinite_light_pdf(const light *l, vec3 point, vec3 direction)
+static float escaped_pdf(const light *l, vec3 point, vec3 direction)
 {
     return l->as.infinite.portal ? portal_pdf(l->as.infinite.portal, point, direction)
                                  : environment_whole_pdf(&l->as.infinite.radiance, direction);
 }
+
+static bool has_direction_numbers(const light *l) { return !l->as.infinite.portal; }
+
+static bool direction_numbers(const light *l, vec3 direction, vec2 *out_u)
+{
+    return environment_sample_whole_numbers(&l->as.infinite.radiance, direction, out_u);
+}
+
+static environment *picture(const light *l) { return l->as.infinite.radiance.picture; }
 
 static bool sample_from_point(const scene *s, const light *l, vec3 point, vec2 u, light_sample *out)
 {
@@ -120,6 +127,11 @@ const light_type infinite_light = {.can_be_met = true,
                                    .add_hash = add_hash,
                                    .power = power,
                                    .sample_from_point = sample_from_point,
+                                   .escaped_radiance = escaped_radiance,
+                                   .escaped_pdf = escaped_pdf,
+                                   .has_direction_numbers = has_direction_numbers,
+                                   .direction_numbers = direction_numbers,
+                                   .picture = picture,
                                    .emit = emit,
                                    .emission_numbers_of = emission_numbers_of,
                                    .reaches = reaches};

@@ -28,6 +28,16 @@ void light_reset(light *l)
 
 bool light_can_be_met(const light *l) { return light_type_of(l->kind)->can_be_met; }
 
+bool light_is_everywhere(const light *l) { return light_type_of(l->kind)->is_everywhere; }
+
+bool light_is_sky(const light *l) { return light_type_of(l->kind)->escaped_radiance != NULL; }
+
+struct environment *light_picture_of(const light *l)
+{
+    const light_type *type = light_type_of(l->kind);
+    return type->picture ? type->picture(l) : NULL;
+}
+
 ag_status light_commit(const scene *s, light *l)
 {
     const light_type *type = light_type_of(l->kind);
@@ -54,6 +64,27 @@ float light_pdf_from_point(const scene *s, const light *l, vec3 point, const sur
 {
     const light_type *type = light_type_of(l->kind);
     return type->pdf_from_point ? type->pdf_from_point(s, l, point, hit) : 0.0f;
+}
+
+rgb light_escaped_radiance(const light *l, vec3 point, vec3 direction)
+{
+    return light_type_of(l->kind)->escaped_radiance(l, point, direction);
+}
+
+float light_escaped_pdf(const light *l, vec3 point, vec3 direction)
+{
+    return light_type_of(l->kind)->escaped_pdf(l, point, direction);
+}
+
+bool light_has_direction_numbers(const light *l)
+{
+    const light_type *type = light_type_of(l->kind);
+    return type->has_direction_numbers && type->has_direction_numbers(l);
+}
+
+bool light_direction_numbers(const light *l, vec3 direction, vec2 *out_u)
+{
+    return light_type_of(l->kind)->direction_numbers(l, direction, out_u);
 }
 
 bool light_ball_cone(vec3 center, float radius, vec3 point, float *out_one_minus_cos)

@@ -122,6 +122,12 @@ void light_reset(light *l);
 /* Returns whether scattered rays can meet the light: area and infinite lights. The others are found by shadow rays
  * alone. */
 bool light_can_be_met(const light *l);
+/* Returns whether the light comes from infinitely far away: that of skies and suns. */
+bool light_is_everywhere(const light *l);
+/* Returns whether rays that meet no surface see the light: infinite lights. */
+bool light_is_sky(const light *l);
+/* Returns the picture of all directions that the light holds, or NULL. */
+struct environment *light_picture_of(const light *l);
 
 /* A sample of the light that arrives at a point. */
 typedef struct light_sample {
@@ -145,8 +151,19 @@ ag_status light_commit(const struct scene *s, light *l);
 bool light_sample_from_point(const struct scene *s, const light *l, vec3 point, vec2 u, light_sample *out_sample);
 
 /* Returns the density with which light_sample_from_point picks the direction from a point to a hit on the light's
- * shape, 1/sr. For lights of kind LIGHT_INFINITE see infinite_light_pdf. */
+ * shape, 1/sr. For skies see light_escaped_pdf. */
 float light_pdf_from_point(const struct scene *s, const light *l, vec3 point, const struct surface_hit *hit);
+
+/* Of a sky: returns the radiance, W/m^2/sr, that a ray from a point sees in a direction (towards the light, unit) where
+ * it meets no surface, and the density with which light_sample_from_point picks that direction, 1/sr. */
+rgb light_escaped_radiance(const light *l, vec3 point, vec3 direction);
+float light_escaped_pdf(const light *l, vec3 point, vec3 direction);
+
+/* Returns whether light_sample_from_point picks the same direction by u from all points, so that a guide may learn
+ * which u are of use; such is a sky that does not come in by a portal. light_direction_numbers, for such lights alone,
+ * finds the u, up to rounding, by which a direction is picked; it returns false where it is never picked. */
+bool light_has_direction_numbers(const light *l);
+bool light_direction_numbers(const light *l, vec3 direction, vec2 *out_u);
 
 /* Returns the radiance that an area light emits at a point on it in a direction (away from it, unit), W/m^2/sr. */
 rgb light_emitted_radiance(const struct scene *s, const light *l, const struct surface_hit *hit, vec3 direction);

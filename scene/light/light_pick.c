@@ -74,7 +74,7 @@ ag_status light_pick_commit(scene *s, log_sink *log)
     }
     for (uint32_t i = 0; i < s->light_count; i++) {
         const light *l = &s->lights[i];
-        if (l->kind == LIGHT_INFINITE)
+        if (light_is_sky(l))
             s->infinite_lights[s->infinite_light_count++] = i;
         if (!(mean_power(l) > 0.0))
             continue;
@@ -159,7 +159,7 @@ float scene_light_probability(const scene *s, uint32_t light_index, vec3 point, 
     bool has_lamps;
     uint32_t shares = count_shares(s, point, normal, &has_lamps);
     shares += has_lamps;
-    if (light_type_of(l->kind)->is_everywhere)
+    if (light_is_everywhere(l))
         return reaches(l, point, normal) ? 1.0f / (float)shares : 0.0f;
     return has_lamps ? light_tree_probability(s->light_tree, light_index, point, normal) / (float)shares : 0.0f;
 }

@@ -32,6 +32,14 @@ typedef struct light_type {
     float (*pdf_from_point)(const scene *s, const light *l, vec3 point, const struct surface_hit *hit);
     /* light_emitted_radiance; NULL: black. */
     rgb (*emitted_radiance)(const scene *s, const light *l, const struct surface_hit *hit, vec3 direction);
+    /* light_escaped_radiance and light_escaped_pdf of a sky; NULL, both: the light is none. */
+    rgb (*escaped_radiance)(const light *l, vec3 point, vec3 direction);
+    float (*escaped_pdf)(const light *l, vec3 point, vec3 direction);
+    /* light_has_direction_numbers and light_direction_numbers; NULL, both: it has none. */
+    bool (*has_direction_numbers)(const light *l);
+    bool (*direction_numbers)(const light *l, vec3 direction, vec2 *out_u);
+    /* light_picture_of; NULL: it holds none. */
+    struct environment *(*picture)(const light *l);
     /* light_emit. *out_emission has the light's own medium. */
     bool (*emit)(const scene *s, const light *l, const light_target *target, const emission_numbers *numbers,
                  struct rng *random, light_emission *out_emission);

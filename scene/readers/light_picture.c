@@ -137,10 +137,7 @@ ag_status light_picture_surround(light_picture *picture, const char *name, envir
 environment *light_picture_find_kept(scene *s, const char *name, uint64_t version, bool is_gray)
 {
     for (uint32_t i = 0; s->before && version != 0 && i < s->before->light_count; i++) {
-        const light *l = &s->before->lights[i];
-        environment *e = l->kind == LIGHT_INFINITE      ? l->as.infinite.radiance.picture
-                         : l->kind == LIGHT_GONIOMETRIC ? l->as.goniometric.intensity.picture
-                                                        : NULL;
+        environment *e = light_picture_of(&s->before->lights[i]);
         if (e && e->name && e->version == version && e->is_gray == is_gray && strcmp(e->name, name) == 0) {
             s->reuse.pictures_kept++;
             return environment_hold(e);

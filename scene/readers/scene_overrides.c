@@ -226,7 +226,7 @@ static ag_status add_sky(run_context *run, const compass *c, scene *s)
         light_reset(&sky);
         return status;
     }
-    scene_drop_lights(s, LIGHT_INFINITE);
+    scene_drop_lights(s, light_is_sky);
     return scene_add_light(s, &sky, &index);
 }
 
@@ -241,7 +241,7 @@ ag_status scene_overrides_apply(run_context *run, const char *path, bool is_pbrt
         log_message(run->log, AG_LOG_WARNING,
                     "which axis points up is asked for, but no sun or sky is, and the file has its own camera");
     if (asked->drops_lights)
-        scene_drop_all_lights(s);
+        scene_drop_lights(s, NULL);
     if (asked->has_sky)
         AG_TRY(add_sky(run, &c, s));
     return asked->has_sun ? add_sun(run, &c, s) : AG_OK;

@@ -3,7 +3,6 @@
 /* ctest: serial */
 #include "fixtures/test_scene.h"
 #include "light/environment.h"
-#include "light/infinite_light.h"
 
 enum { SAMPLES = 200000 / FEWER };
 
@@ -278,10 +277,10 @@ static scene *lit_scene_create(test_run *r, environment *e, rgb radiance)
     return s;
 }
 
-static double density(void *user, vec3 d) { return infinite_light_pdf(user, (vec3){0.0f, 0.0f, 0.0f}, d); }
+static double density(void *user, vec3 d) { return light_escaped_pdf(user, (vec3){0.0f, 0.0f, 0.0f}, d); }
 static double density_of_photons(void *user, vec3 d)
 {
-    return infinite_light_pdf(user, (vec3){0.0f, 0.0f, 0.0f}, vec3_negate(d));
+    return light_escaped_pdf(user, (vec3){0.0f, 0.0f, 0.0f}, vec3_negate(d));
 }
 
 static environment *environment_for(int k)
@@ -310,9 +309,9 @@ static void directions_are_sampled_by_their_density(void **state)
             assert_false(at.is_delta);
             assert_true(isinf(at.distance));
             assert_close(vec3_length(at.direction), 1.0, 1e-6);
-            rgb seen = infinite_light_radiance(l, point, at.direction);
+            rgb seen = light_escaped_radiance(l, point, at.direction);
             /* but for rounding at the borders of pixels, what is sampled is what is seen */
-            strangers += infinite_light_pdf(l, point, at.direction) != at.pdf_solid_angle ||
+            strangers += light_escaped_pdf(l, point, at.direction) != at.pdf_solid_angle ||
                          memcmp(&seen, &at.radiance, sizeof seen);
             double inverse = 1.0 / (double)at.pdf_solid_angle / SAMPLES;
             integral[0] += (double)at.radiance.r * inverse, integral[1] += (double)at.radiance.g * inverse;
@@ -423,7 +422,7 @@ static void a_black_picture_sends_nothing(void **state)
     light_emission start;
     assert_false(light_sample_from_point(s, &s->lights[0], vec3_make(0.0f, 0.0f, 0.0f), (vec2){0.5f, 0.5f}, &at));
     assert_false(light_sample_emission(s, &s->lights[0], NULL, &random, &start));
-    assert_true(infinite_light_pdf(&s->lights[0], vec3_make(0.0f, 0.0f, 0.0f), vec3_make(0.0f, 0.0f, 1.0f)) == 0.0f);
+    assert_true(light_escaped_pdf(&s->lights[0], vec3_make(0.0f, 0.0f, 0.0f), vec3_make(0.0f, 0.0f, 1.0f)) == 0.0f);
     assert_true(rgb_is_black(s->light_power));
     scene_destroy(s);
     test_run_reset(&r);

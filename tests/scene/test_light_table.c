@@ -4,7 +4,6 @@
  * those of points go by intensity. Threads: one. */
 /* ctest: serial */
 #include "fixtures/light_fixture.h"
-#include "light/infinite_light.h"
 
 enum { SAMPLES = 16000 / FEWER };
 
@@ -158,7 +157,8 @@ static disc row_disc(const light_row *row, const light *l, int which)
 static void every_kind_has_a_row(void **state)
 {
     (void)state;
-    bool is_there[LIGHT_KIND_COUNT] = {false}, has_portal = false, has_map = false, has_picture = false;
+    bool is_there[LIGHT_KIND_COUNT] = {false}, has_portal = false, has_map = false, has_picture = false,
+         has_numbers = false;
     for (int k = 0; k < ROW_COUNT; k++) {
         test_run r;
         test_run_init(&r, 1);
@@ -169,12 +169,14 @@ static void every_kind_has_a_row(void **state)
         has_map = has_map || (l->kind == LIGHT_AREA && l->as.area.map);
         has_picture =
             has_picture || (l->kind == LIGHT_INFINITE && l->as.infinite.radiance.picture && !l->as.infinite.portal);
+        has_numbers = has_numbers || light_has_direction_numbers(l);
+        assert_true(light_is_sky(l) == (light_can_be_met(l) && light_is_everywhere(l)));
         scene_destroy(s);
         test_run_reset(&r);
     }
     for (int kind = 0; kind < LIGHT_KIND_COUNT; kind++)
         assert_true(is_there[kind]);
-    assert_true(has_portal && has_map && has_picture);
+    assert_true(has_portal && has_map && has_picture && has_numbers);
 }
 
 /* --- towards a point --- */
@@ -190,9 +192,9 @@ static double look(const scene *s, vec3 point, vec3 d, rgb *out_radiance)
 {
     const light *l = &s->lights[0];
     *out_radiance = rgb_gray(0.0f);
-    if (l->kind == LIGHT_INFINITE) {
-        *out_radiance = infinite_light_radiance(l, point, d);
-        return infinite_light_pdf(l, point, d);
+    if (light_is_sky(l)) {
+        *out_radiance = light_escaped_radiance(l, point, d);
+        return light_escaped_pdf(l, point, d);
     }
     surface_hit hit;
     if (l->kind != LIGHT_AREA || !scene_intersect(s, scene_ray_make(point, d), INFINITY, &hit) ||
@@ -211,6 +213,16 @@ static double density(void *user, vec3 d)
     return value;
 }
 
+/* Whether the numbers are found by which a direction is picked, and pick it from another point too. */
+static bool is_picked_by(const scene *s, const light *l, vec3 point, vec3 direction, vec2 u)
+{
+    vec2 found;
+    light_sample at;
+    return light_direction_numbers(l, direction, &found) && fabsf(found.x - u.x) < 1e-3f &&
+           fabsf(found.y - u.y) < 1e-3f && light_sample_from_point(s, l, point, u, &at) &&
+           vec3_distance_squared(at.direction, direction) == 0.0f;
+}
+
 static void check_towards(const light_row *row, const scene *s, vec3 point)
 {
     static uint32_t counts[BIN_COUNT];
@@ -224,17 +236,20 @@ static void check_towards(const light_row *row, const scene *s, vec3 point)
     v = (view){.s = s, .point = point};
     for (int i = 0; i < SAMPLES; i++) {
         light_sample at;
-        if (!light_sample_from_point(s, l, point, rng_vec2(&random), &at))
+        vec2 u = rng_vec2(&random);
+        if (!light_sample_from_point(s, l, point, u, &at))
             continue;
         assert_close(vec3_length(at.direction), 1.0, 1e-5);
         assert_true(at.pdf_solid_angle > 0.0f && rgb_is_finite(at.radiance) && !rgb_is_black(at.radiance));
-        assert_true(at.is_delta == (is_unseen || (l->kind != LIGHT_AREA && l->kind != LIGHT_INFINITE)));
-        assert_true(isinf(at.distance) == (l->kind == LIGHT_DISTANT || l->kind == LIGHT_INFINITE));
+        assert_true(at.is_delta == (is_unseen || !light_can_be_met(l)));
+        assert_true(isinf(at.distance) == light_is_everywhere(l));
         if (is_unseen)
             continue;
+        if (light_has_direction_numbers(l))
+            strangers += !is_picked_by(s, l, vec3_add(point, vec3_make(0.3f, 0.2f, 0.1f)), at.direction, u);
         if (at.is_delta) { /* one direction, and what intensity brings there */
             assert_true(at.pdf_solid_angle == 1.0f);
-            if (l->kind == LIGHT_DISTANT)
+            if (light_is_everywhere(l))
                 continue;
             vec3 to = vec3_sub(l->as.point.position, point);
             double square = vec3_length_squared(to);
@@ -253,7 +268,7 @@ static void check_towards(const light_row *row, const scene *s, vec3 point)
             strangers += fabs(pdf / (double)at.pdf_solid_angle - 1.0) > 0.01 ||
                          fabsf(radiance.g - at.radiance.g) > 1e-3f * at.radiance.g;
     }
-    if (l->kind != LIGHT_AREA && l->kind != LIGHT_INFINITE)
+    if (!light_can_be_met(l))
         return;
     assert_true(strangers <= SAMPLES / 50); /* along outlines, and the borders of squares, pixels and cells */
     if (row->is_alpha_surface)

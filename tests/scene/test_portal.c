@@ -2,7 +2,6 @@
  * that enter. Threads: one. */
 /* ctest: serial */
 #include "fixtures/light_fixture.h"
-#include "light/infinite_light.h"
 
 enum { SAMPLES = 24000 / (FEWER > 1 ? 4 : 1) };
 
@@ -61,7 +60,7 @@ static double density(void *user, vec3 d)
         const light *l;
         vec3 point;
     } *v = user;
-    return infinite_light_pdf(v->l, v->point, d);
+    return light_escaped_pdf(v->l, v->point, d);
 }
 
 /* Whether the ray meets the window, in doubles. */
@@ -105,8 +104,8 @@ static void directions_are_sampled_by_their_density(void **state)
                 assert_close(vec3_length(at.direction), 1.0, 1e-6);
                 counts[direction_bin(at.direction)]++;
                 outside += !passes(l->as.infinite.portal, v.point, at.direction);
-                rgb seen = infinite_light_radiance(l, v.point, at.direction);
-                float pdf = infinite_light_pdf(l, v.point, at.direction);
+                rgb seen = light_escaped_radiance(l, v.point, at.direction);
+                float pdf = light_escaped_pdf(l, v.point, at.direction);
                 strangers += fabsf(pdf / at.pdf_solid_angle - 1.0f) > 1e-4f || memcmp(&seen, &at.radiance, sizeof seen);
             }
             assert_true(drawn > SAMPLES / 10);
@@ -149,7 +148,7 @@ static void the_light_is_what_comes_through(void **state)
                 if (passes(l->as.infinite.portal, point, d))
                     mean_add(&all, 4.0 * PI * (double)environment_whole_radiance(&l->as.infinite.radiance, d).g, ALL);
                 assert_true(passes(l->as.infinite.portal, point, d) || i % 64 ||
-                            rgb_is_black(infinite_light_radiance(l, point, d)));
+                            rgb_is_black(light_escaped_radiance(l, point, d)));
             }
             assert_close(through.value, all.value, 5.0 * hypot(mean_error(through, SAMPLES), mean_error(all, ALL)));
             /* nearly by radiance: little noise is left */
@@ -160,8 +159,8 @@ static void the_light_is_what_comes_through(void **state)
         light_sample at;
         vec3 behind = vec3_make(6.0f, 0.0f, 0.0f), back = vec3_make(-1.0f, 0.0f, 0.0f);
         assert_false(light_sample_from_point(s, l, behind, (vec2){0.5f, 0.5f}, &at));
-        assert_true(rgb_is_black(infinite_light_radiance(l, behind, back)));
-        assert_true(infinite_light_pdf(l, behind, back) == 0.0f);
+        assert_true(rgb_is_black(light_escaped_radiance(l, behind, back)));
+        assert_true(light_escaped_pdf(l, behind, back) == 0.0f);
         scene_destroy(s);
         test_run_reset(&r);
     }
@@ -271,7 +270,7 @@ static void a_black_sky(void **state)
     light_emission e;
     assert_false(light_sample_from_point(s, &s->lights[0], POINTS[0], (vec2){0.5f, 0.5f}, &at));
     assert_false(light_sample_emission(s, &s->lights[0], NULL, &random, &e));
-    assert_true(infinite_light_pdf(&s->lights[0], POINTS[0], vec3_make(1.0f, 0.0f, 0.0f)) == 0.0f);
+    assert_true(light_escaped_pdf(&s->lights[0], POINTS[0], vec3_make(1.0f, 0.0f, 0.0f)) == 0.0f);
     assert_true(rgb_is_black(s->light_power));
     scene_destroy(s);
     test_run_reset(&r);
