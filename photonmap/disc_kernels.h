@@ -27,7 +27,7 @@ typedef struct photon_disc {
     const photon_block *blocks;
     vec3 position, normal;
     float radius;          /* > 0 */
-    float level;           /* photons within this height of the point's plane lie on its surface */
+    float level_height;    /* scene units: photons no higher above or below the point's plane lie on its surface */
     int flux_exponent_max; /* of any photon of the map */
     bool has_offsets;      /* photon_disc_sums.offset is wanted; else it need not be right */
 } photon_disc;
@@ -85,8 +85,8 @@ typedef struct disc_kernels {
  * surface with the two normals, and no higher than the level. */
 static inline bool photon_disc_is_on_level(const photon_disc *disc, vec3 offset, uint16_t normal_code)
 {
-    float height = vec3_dot(offset, disc->normal), below = -height - disc->level;
-    if (fabsf(height) <= disc->level)
+    float height = vec3_dot(offset, disc->normal), below = -height - disc->level_height;
+    if (fabsf(height) <= disc->level_height)
         return true;
     /* below <= lateral tan(angle between the normals), squared; the angle is less than 90 degrees */
     vec3 n = direction_decode_unnormalized(normal_code);

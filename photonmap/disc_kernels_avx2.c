@@ -382,7 +382,7 @@ AVX2 static inline bool find_photons(const photon_disc *disc, const photon_found
 AVX2 static inline __m256i find_on_level(const photon_disc *disc, const photons_8 *p)
 {
     vec3_8 normal = fill(disc->normal);
-    __m256 level = _mm256_set1_ps(disc->level), height = dot(p->offset, normal);
+    __m256 level = _mm256_set1_ps(disc->level_height), height = dot(p->offset, normal);
     __m256 is_flat = _mm256_cmp_ps(absolute(height), level, _CMP_LE_OQ);
     if (_mm256_testc_ps(is_flat, _mm256_castsi256_ps(p->is_found)))
         return _mm256_castps_si256(is_flat);

@@ -305,7 +305,7 @@ AVX512 static inline __mmask16 find_on_level(const photon_disc *disc, const phot
                                              __mmask16 found)
 {
     vec3_16 normal = fill(disc->normal);
-    __m512 level = _mm512_set1_ps(disc->level), height = dot(offset, normal);
+    __m512 level = _mm512_set1_ps(disc->level_height), height = dot(offset, normal);
     uint32_t is_flat = _mm512_mask_cmp_ps_mask(found, _mm512_abs_ps(height), level, _CMP_LE_OQ);
     if (is_flat == found)
         return found;

@@ -6,9 +6,9 @@
 #include "rays/transmittance.h"
 #include "surface_region.h"
 
-/* A photon whose height above or below the tangent plane is more than this share of the radius may lie on another
- * surface: rays tell whether the point sees it. */
-static const float LEVEL = 1.0f / 32.0f;
+/* A photon whose height above or below the tangent plane is more than this share of the disc's radius may lie on
+ * another surface: rays tell whether the point sees it. */
+static const float LEVEL_HEIGHT_SHARE = 1.0f / 32.0f;
 
 /* Photons that crowd to one side of the disc, by more than this share of its radius on average, hint at an edge. */
 static const float LOPSIDED = 0.15f;
@@ -36,7 +36,7 @@ static bool is_of_this_level(const photon_map *map, const photon_disc *disc, uin
         return !photon_map_is_behind_wall(map, map->blocks, disc->position, disc->normal, index, in_out_rays);
     /* the space above a low photon must be empty */
     scene_ray up =
-        scene_ray_make(vec3_add_scaled(at, disc->normal, 0.5f * disc->level), vec3_scale(disc->normal, -height));
+        scene_ray_make(vec3_add_scaled(at, disc->normal, 0.5f * disc->level_height), vec3_scale(disc->normal, -height));
     ++*in_out_rays;
     return !scene_is_blocked(map->surfaces, up, 1.0f);
 }
@@ -261,7 +261,7 @@ static irradiance_extent find(const photon_map *map, vec3 position, vec3 normal,
                         .position = position,
                         .normal = normal,
                         .radius = radius,
-                        .level = map->surfaces ? radius * LEVEL : INFINITY,
+                        .level_height = map->surfaces ? radius * LEVEL_HEIGHT_SHARE : INFINITY,
                         .flux_exponent_max = map->flux_exponent_max,
                         .has_offsets = map->surfaces && !is_whole};
 

@@ -79,7 +79,7 @@ static transport make_transport(ag_context *context, const scene *s, const ag_re
         .pixel_share = pixel_share(s, settings),
         .has_lights = rgb_max(s->light_power) > 0.0f,
         .media_are_bounded = settings_bound_media(settings),
-        .panes_are_direct = s->has_panes && settings->pane_light == AG_PANE_LIGHT_DIRECT};
+        .panes_are_direct = s->has_panes && settings_panes_are_direct(settings)};
     for (uint32_t i = 0; i < s->light_count; i++)
         t.can_meet_lights = t.can_meet_lights || light_can_be_met(&s->lights[i]);
     return t;

@@ -80,7 +80,7 @@ static ag_status trace_after(ag_context *context, const scene *s, const ag_rende
                                        .paths = settings->photon_paths,
                                        .max_scatterings = settings->max_depth - 2,
                                        .media_are_bounded = settings_bound_media(settings),
-                                       .panes_are_direct = settings->pane_light == AG_PANE_LIGHT_DIRECT,
+                                       .panes_are_direct = settings_panes_are_direct(settings),
                                        .filters_textures =
                                            settings->texture_filter == AG_TEXTURE_FILTER_ON && s->filters_textures,
                                        .seed = settings->photon_seed,

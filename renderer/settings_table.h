@@ -51,6 +51,12 @@ static inline bool settings_bound_media(const ag_render_settings *settings)
     return settings->max_depth < DEPTH_BY_ROULETTE;
 }
 
+/* Whether light straight through panes is direct light; else panes are glass like any other. */
+static inline bool settings_panes_are_direct(const ag_render_settings *settings)
+{
+    return settings->pane_light == AG_PANE_LIGHT_DIRECT;
+}
+
 /* NULL: there are no more. */
 const setting_row *setting_at(size_t index);
 /* All settings at their defaults. */

@@ -337,7 +337,7 @@ static ag_status merge_starts(const pilot_job *job, emission_starts *out_starts)
 static ag_status look_over_frame(pilot_job *job, run_context *run, int paths, const ag_render_settings *settings)
 {
     job->t.media_are_bounded = settings_bound_media(settings);
-    job->t.panes_are_direct = job->t.s->has_panes && settings->pane_light == AG_PANE_LIGHT_DIRECT;
+    job->t.panes_are_direct = job->t.s->has_panes && settings_panes_are_direct(settings);
     job->t.settings = settings;
     job->aspect = (float)settings->width / (float)settings->height;
     divide_frame(paths, job->aspect, &job->width, &job->height);

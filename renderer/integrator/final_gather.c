@@ -246,6 +246,6 @@ void final_gather_resolve(const transport *t, eye_worker *worker)
     uint32_t query = 0, count;
     while ((count = gather_batch_make_detours(b, &query)) > 0)
         follow_detours(t, worker, count);
-    worker->cost_apart += eye_worker_cost(worker) - cost_before;
+    worker->uncharged_cost += eye_worker_cost(worker) - cost_before;
     gather_batch_sum(b);
 }

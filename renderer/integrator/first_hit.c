@@ -26,7 +26,7 @@ static rgb irradiance_at(const transport *t, eye_worker *worker, const vertex *v
     rgb irradiance;
     uint64_t rays = worker->rays_estimate;
     irradiance_estimate_find(map, at.position, at.facing_normal, neighbors, &worker->rays_estimate, &irradiance);
-    worker->cost_apart +=
+    worker->uncharged_cost +=
         worker->rays_estimate -
         rays; /* not charged to the sample: asking for a layer must not change how samples are split */
     arena_restore(worker->scratch, mark);

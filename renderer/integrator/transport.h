@@ -46,7 +46,7 @@ typedef struct eye_worker {
     arena *scratch;                        /* for neighbours; what render.c has tried out beforehand always fits */
     gather_batch *batch;                   /* of the samples under way; NULL for path tracing */
     struct sample_queue *queue;            /* those samples */
-    uint64_t cost_apart;                   /* of what is not charged to a sample: detours of gather rays, and layers */
+    uint64_t uncharged_cost;               /* of what is not charged to a sample: detours of gather rays, and layers */
 } eye_worker;
 
 /* The cost of a worker's rays so far in quarters of a gather ray's time, as measured in five rooms. Detours are left
@@ -57,7 +57,7 @@ static inline uint64_t eye_worker_cost(const eye_worker *w)
 {
     return EYE_COST_OF_CAMERA_RAY * w->rays_camera + EYE_COST_OF_PATH_RAY * w->rays_path +
            EYE_COST_OF_RAY * (w->rays_shadow + w->rays_gather) + w->rays_estimate +
-           EYE_COST_OF_CAUSTIC * w->estimates_caustic - w->cost_apart;
+           EYE_COST_OF_CAUSTIC * w->estimates_caustic - w->uncharged_cost;
 }
 
 /* The numbers of samples that direct light takes at a diffuse vertex. */

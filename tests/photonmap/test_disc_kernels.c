@@ -108,7 +108,7 @@ static void sums_are_the_same(void **state)
                                 .position = photon_block_position(tree.blocks, photon_index),
                                 .normal = direction_decode(photon_block_normal(tree.blocks, photon_index)),
                                 .radius = 3.0f,
-                                .level = LEVELS[round % 4],
+                                .level_height = LEVELS[round % 4],
                                 .flux_exponent_max = 72,
                                 .has_offsets = round % 3 > 0};
             pick_photons(&random, &tree, disc.position, &found);
@@ -133,7 +133,7 @@ static void sums_are_the_same(void **state)
                 assert_same_sums(&sums[0], &sums[1]);
             assert_int_equal(inside[0], inside[1]);
             assert_same_sums(&sums_inside[0], &sums_inside[1]);
-            if (disc.level == INFINITY)
+            if (disc.level_height == INFINITY)
                 assert_int_equal(kept[0], found.count);
             doubtful_sum += found.count - kept[0];
             inside_sum += inside[0];
