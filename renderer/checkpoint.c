@@ -8,6 +8,7 @@
 #include "rays/bvh.h"
 #include "scene_hash.h"
 #include "settings_table.h"
+#include "status.h"
 #include "text/input_file.h"
 
 #include <assert.h>
@@ -40,9 +41,11 @@ static uint64_t words_of(const struct ag_rendering *r)
                : 0;
 }
 
-void checkpoint_header_make(const struct ag_rendering *r, checkpoint_header *out)
+ag_status checkpoint_header_make(const struct ag_rendering *r, checkpoint_header *out)
 {
     memset(out, 0, sizeof *out);
+    if (integrator_of(r->settings.integrator)->has_photon_map)
+        AG_TRY(context_estimates(r->context, &out->estimates));
     memcpy(out->magic, MAGIC, sizeof out->magic);
     out->layout = CHECKPOINT_LAYOUT;
     out->byte_order = BYTE_ORDER;
@@ -58,6 +61,7 @@ void checkpoint_header_make(const struct ag_rendering *r, checkpoint_header *out
     out->photon_count = words_of(r);
     out->settings_size = (uint32_t)settings_of_picture(&r->settings, out->settings, sizeof out->settings);
     assert(out->settings_size <= sizeof out->settings);
+    return AG_OK;
 }
 
 const char *checkpoint_header_difference(const checkpoint_header *file, const checkpoint_header *ours)
@@ -71,6 +75,8 @@ const char *checkpoint_header_difference(const checkpoint_header *file, const ch
         return setting;
     if (file->settings_size != ours->settings_size)
         return "set of settings";
+    if (!hash128_is_equal(file->estimates, ours->estimates))
+        return "build of the program, whose photon map has other light";
     if (!hash128_is_equal(file->filter, ours->filter))
         return "pixel filter";
     if (!hash128_is_equal(file->scene, ours->scene))
@@ -94,7 +100,7 @@ ag_status ag_rendering_write_checkpoint(const ag_rendering *r, const char *path)
     film_plane planes[FILM_PLANES_MAX];
     atomic_file_piece pieces[FILM_PLANES_MAX + 3];
     uint32_t *words = NULL, crc = 0;
-    checkpoint_header_make(r, &header);
+    AG_TRY(checkpoint_header_make(r, &header));
     if (header.photon_count > 0) {
         words = malloc((size_t)header.photon_count * sizeof *words);
         if (!words)
@@ -176,6 +182,8 @@ ag_status ag_rendering_read_checkpoint(ag_rendering *r, const char *path)
 {
     if (!r || !path)
         return AG_ERROR_ARGUMENT;
+    checkpoint_header ours;
+    AG_TRY(checkpoint_header_make(r, &ours));
     char text[128] = "";
     int descriptor = input_file_open(NULL, path, text, sizeof text);
     if (descriptor < 0)
@@ -185,8 +193,7 @@ ag_status ag_rendering_read_checkpoint(ag_rendering *r, const char *path)
         close(descriptor);
         return AG_ERROR_MEMORY;
     }
-    checkpoint_header header, ours;
-    checkpoint_header_make(r, &ours);
+    checkpoint_header header;
     bool has_header = fread(&header, sizeof header, 1, file) == 1;
     const char *why = NULL, *what = "";
     if (!has_header || memcmp(header.magic, MAGIC, sizeof MAGIC) != 0)

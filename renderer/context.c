@@ -4,10 +4,13 @@
 #include "context.h"
 
 #include "clock.h"
+#include "estimate_fingerprint.h"
 #include "film/film_tiles.h"
+#include "floating_point.h"
 #include "last_frame.h"
 #include "output/denoise.h"
 #include "public_structs.h"
+#include "status.h"
 #include "texture/texture_cache.h"
 #include "texture/texture_file_levels.h"
 #include "texture/texture_udim.h"
@@ -25,6 +28,20 @@ ag_status context_check_struct(ag_context *context, const char *type, size_t siz
                 "compiled with the headers of this release",
                 type, size, known_size);
     return AG_ERROR_ARGUMENT;
+}
+
+ag_status context_estimates(ag_context *context, hash128 *out_hash)
+{
+    if (!context->has_estimates) {
+        unsigned callers_arithmetic = floating_point_enter();
+        ag_status status =
+            estimate_fingerprint(&context->run, context->isa, irradiance_estimate_find, &context->estimates);
+        floating_point_leave(callers_arithmetic);
+        AG_TRY(status);
+        context->has_estimates = true;
+    }
+    *out_hash = context->estimates;
+    return AG_OK;
 }
 
 static bool copy_confinement(const ag_context_settings *settings, ag_context *c)

@@ -6,6 +6,7 @@
 #include "clock.h"
 #include "color/color.h"
 #include "film/film.h"
+#include "math/hash128.h"
 #include "run_context.h"
 #include "scene.h"
 #include "text/input_file.h"
@@ -31,6 +32,8 @@ struct ag_context {
     size_t scene_count;            /* those made with it that have not been freed */
     bool is_dropped;               /* it goes with the last of them */
     char *color_views;             /* of ag_color_view_at, as color_config_list_views has them, or NULL */
+    hash128 estimates;             /* of context_estimates, where has_estimates */
+    bool has_estimates;
 };
 
 struct ag_scene {
@@ -82,6 +85,10 @@ ag_status context_check_textures(ag_context *context, const scene *s);
 /* The context's colour config, and with it context->working_space; read when first asked for. What is wrong is said in
  * the log. Errors: AG_ERROR_COLOR, AG_ERROR_MEMORY. (output_color.c) */
 ag_status context_color_config(ag_context *context, const color_config **out_config);
+
+/* The fingerprint of the program's photons and irradiance estimates (estimate_fingerprint), computed when first asked
+ * for. Errors: AG_ERROR_MEMORY, AG_ERROR_RAY_TRACING. */
+ag_status context_estimates(ag_context *context, hash128 *out_hash);
 
 /* Whether a struct of the caller's, of that type, has the size that the library knows: to be asked before any other
  * member is read. Errors: AG_ERROR_ARGUMENT, with a message. */

@@ -5,7 +5,6 @@
 #include "map_file.h"
 
 #include "descriptor.h"
-#include "estimate_fingerprint.h"
 #include "output/atomic_file.h"
 #include "scene_hash.h"
 #include "settings_table.h"
@@ -51,13 +50,13 @@ static void describe_machine(const char *isa, char *out, size_t size)
     snprintf(out, size, "%.20s %s %s", system.machine, maker, isa);
 }
 
-/* Errors: those of estimate_fingerprint. */
+/* Errors: those of context_estimates. */
 static ag_status make_key(ag_context *context, const scene *s, const ag_render_settings *settings,
                           photon_file_key *out_key)
 {
     photon_file_key key;
     memset(&key, 0, sizeof key);
-    AG_TRY(estimate_fingerprint(&context->run, context->isa, irradiance_estimate_find, &key.estimates));
+    AG_TRY(context_estimates(context, &key.estimates));
     key.scene = scene_hash_of_light(s);
     size_t length = settings_of_photon_map(settings, key.settings, sizeof key.settings);
     assert(length < sizeof key.settings);

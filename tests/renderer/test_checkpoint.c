@@ -3,9 +3,11 @@
  * Threads: the renderer's. */
 #define _GNU_SOURCE
 #include "checkpoint.h"
+#include "estimate_fingerprint.h"
 #include "fixtures/layers_fixture.h"
 
 #include <pthread.h>
+#include <zlib.h>
 
 /* Asks for a pause again and again, at no moment that anybody could tell beforehand. */
 typedef struct pauser {
@@ -156,6 +158,55 @@ static void overwrite(const unsigned char *bytes, size_t size)
     assert_int_equal(fclose(file), 0);
 }
 
+/* A header holds the fingerprint of the photon map's estimates, and the path tracer's holds none. */
+static void test_header_has_estimates(void **state)
+{
+    (void)state;
+    const hash128 none = {{0, 0}};
+    for (int path = 0; path < 2; path++) {
+        studio *s = studio_open(TEXT, 1);
+        s->settings.integrator = path ? AG_INTEGRATOR_PATH : AG_INTEGRATOR_PHOTONMAP;
+        s->settings.photon_count = s->settings.caustic_photon_count = 500;
+        ag_rendering *r = studio_begin(s);
+        checkpoint_header header;
+        hash128 estimates;
+        assert_int_equal(checkpoint_header_make(r, &header), AG_OK);
+        assert_int_equal(estimate_fingerprint(&s->context->run, s->context->isa, irradiance_estimate_find, &estimates),
+                         AG_OK);
+        assert_false(hash128_is_equal(estimates, none));
+        assert_true(hash128_is_equal(header.estimates, path ? none : estimates));
+        ag_rendering_finish(r, NULL);
+        studio_close(s);
+    }
+}
+
+/* A build whose estimates are others makes the same file but for their fingerprint and the checksum. */
+static void test_other_estimates(void **state)
+{
+    (void)state;
+    studio *s = studio_open(TEXT, 1);
+    s->settings.gather_samples = 1;
+    s->settings.photon_count = s->settings.caustic_photon_count = 500;
+    write_checkpoint_of(s);
+    size_t size;
+    unsigned char *bytes = read_bytes(in_folder("c"), &size);
+    uint32_t crc;
+    bytes[offsetof(checkpoint_header, estimates)] ^= 1;
+    crc = (uint32_t)crc32_z(0, bytes, size - sizeof crc);
+    memcpy(bytes + size - sizeof crc, &crc, sizeof crc);
+    overwrite(bytes, size);
+    expect_refusal(s, "with another build of the program");
+    bytes[offsetof(checkpoint_header, estimates)] ^= 1;
+    crc = (uint32_t)crc32_z(0, bytes, size - sizeof crc);
+    memcpy(bytes + size - sizeof crc, &crc, sizeof crc);
+    overwrite(bytes, size);
+    ag_rendering *r = studio_begin(s);
+    assert_int_equal(ag_rendering_read_checkpoint(r, in_folder("c")), AG_OK);
+    ag_rendering_finish(r, NULL);
+    free(bytes);
+    studio_close(s);
+}
+
 static void test_damage(void **state)
 {
     (void)state;
@@ -195,7 +246,7 @@ static void test_every_setting_counts(void **state)
     studio *s = studio_open(TEXT, 1);
     ag_rendering *r = studio_begin(s);
     checkpoint_header before, after;
-    checkpoint_header_make(r, &before);
+    assert_int_equal(checkpoint_header_make(r, &before), AG_OK);
     assert_null(checkpoint_header_difference(&before, &before));
     unsigned char *bytes = (unsigned char *)&r->settings;
     for (size_t at = sizeof r->settings.struct_size; at < sizeof r->settings; at += 4) {
@@ -204,7 +255,7 @@ static void test_every_setting_counts(void **state)
         if (at == offsetof(ag_render_settings, float_samples) || at == gap || is_map_name)
             continue;
         bytes[at] ^= 1;
-        checkpoint_header_make(r, &after);
+        assert_int_equal(checkpoint_header_make(r, &after), AG_OK);
         bytes[at] ^= 1;
         if (!checkpoint_header_difference(&before, &after) && at + 4 < sizeof r->settings)
             fail_msg("checkpoint.c does not know the setting at byte %zu", at);
@@ -216,8 +267,13 @@ static void test_every_setting_counts(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        TEST_IN_FOLDER(test_resumed_bits),         TEST_IN_FOLDER(test_pauses), TEST_IN_FOLDER(test_other_renders),
-        TEST_IN_FOLDER(test_every_setting_counts), TEST_IN_FOLDER(test_damage),
+        TEST_IN_FOLDER(test_resumed_bits),
+        TEST_IN_FOLDER(test_pauses),
+        TEST_IN_FOLDER(test_other_renders),
+        TEST_IN_FOLDER(test_every_setting_counts),
+        TEST_IN_FOLDER(test_header_has_estimates),
+        TEST_IN_FOLDER(test_other_estimates),
+        TEST_IN_FOLDER(test_damage),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
