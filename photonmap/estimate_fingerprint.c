@@ -1,85 +1,148 @@
-/* estimate_fingerprint.c: see estimate_fingerprint.h. */
+/* estimate_fingerprint.c: see estimate_fingerprint.h. First photons that are traced, then estimates from photons that
+ * are laid where estimates have to decide most. */
 #include "estimate_fingerprint.h"
 
 #include "caustic_radius.h"
-#include "math/rng.h"
+#include "fingerprint_scene.h"
+#include "onward_ways.h"
 #include "status.h"
 
-#include <assert.h>
 #include <stdlib.h>
 
-/* The built-in scene is a heap of discs: a large one, and smaller ones over and through it, flat, nearly flat or at any
- * angle, most of them less than a hundredth above or below it. So estimates meet all that they have rules for: walls,
- * corners, ledges, floors close above each other, surfaces that end, and photons that stand denser or are brighter
- * beyond a line. */
-enum { DISCS = 64, PHOTONS = 4096, PHOTONS_OF_FLOOR = 1536, ESTIMATE_EVERY = 8 };
+enum { PHOTONS = 4096, PHOTONS_OF_FLOOR = 1536, ESTIMATE_EVERY = 8 };
 /* Caustic photons of several fluxes, so faint that no other bound decides how far their estimates reach. */
 enum { CAUSTIC_PHOTONS = 16 };
 static const float CAUSTIC_FLUX = 1e-4f;
 /* Estimates of few photons and of many go by other bounds. */
 static const uint32_t NEAREST[] = {20, 96};
-
-/* A disc in a frame whose z is its normal. */
-typedef struct built_in_disc {
-    vec3 center;
-    frame axes;
-    float radius;
-} built_in_disc;
+/* Of tracing. */
+enum { TRACED_PHOTONS = 768, GUIDED_PATHS = 512, CAUSTIC_PATHS = 2048, SCATTERINGS_MAX = 5 };
+enum { TRIALS = 1024, ASKED_POINTS = 256 };
 
 static float between(rng *random, float least, float most) { return least + (most - least) * rng_float(random); }
 
-static void make_discs(built_in_disc discs[DISCS])
+/* --- photons that are traced --- */
+
+/* What guides photons to a part of the floor. */
+typedef struct guidance {
+    importance_map asked, onward;
+    onward_ways ways;
+    emission_guide guide;
+} guidance;
+
+static void guidance_reset(guidance *g)
 {
-    rng random = rng_make(1, 2, 4);
-    discs[0] = (built_in_disc){{0.0f, 0.0f, 0.0f}, frame_identity(), 1.0f};
-    for (int i = 1; i < DISCS; i++) {
-        float x = between(&random, -0.8f, 0.8f), y = between(&random, -0.8f, 0.8f), z = between(&random, -0.3f, 0.3f);
-        float tilt = i % 3 == 0 ? 0.0f : i % 3 == 1 ? 0.1f : 2.0f;
-        vec3 normal = {between(&random, -tilt, tilt), between(&random, -tilt, tilt), 1.0f};
-        discs[i] =
-            (built_in_disc){{x, y, z * z * z}, frame_from_z(vec3_normalize(normal)), between(&random, 0.05f, 0.35f)};
-    }
+    importance_map_reset(&g->asked);
+    importance_map_reset(&g->onward);
+    onward_ways_reset(&g->ways);
+    emission_guide_reset(&g->guide);
 }
 
-static ag_status add_disc(scene *s, const built_in_disc *d)
+static ag_status add_photons(const scene *s, run_context *run, photon_tracing_fn *trace,
+                             const photon_tracing_settings *settings, hash128 *in_out_hash)
 {
-    shape disc = shape_make(SHAPE_DISK);
-    uint32_t index;
-    const double m[4][4] = {{(double)d->axes.x.x, (double)d->axes.y.x, (double)d->axes.z.x, (double)d->center.x},
-                            {(double)d->axes.x.y, (double)d->axes.y.y, (double)d->axes.z.y, (double)d->center.y},
-                            {(double)d->axes.x.z, (double)d->axes.y.z, (double)d->axes.z.z, (double)d->center.z},
-                            {0.0, 0.0, 0.0, 1.0}};
-    disc.as.quadric = (quadric){.radius = d->radius, .turn = 1.0f};
-    bool is_regular = transform_from_matrix(m, &disc.as.quadric.world_from_object);
-    assert(is_regular);
-    (void)is_regular;
-    return scene_add_shape(s, &disc, &index);
+    photon_set set;
+    AG_TRY(trace(s, run, settings, &set));
+    HASH128_ADD(in_out_hash, set.emitted_paths);
+    hash128_add(in_out_hash, set.photons, set.count * sizeof *set.photons);
+    photon_set_reset(&set);
+    return AG_OK;
 }
 
-static ag_status make_scene(run_context *run, const char *isa, const built_in_disc discs[DISCS], scene **out_scene)
+/* Lays importons on the floor whose lines pass above its middle. */
+static ag_status make_ways(run_context *run, const query_point points[ASKED_POINTS], onward_ways *out_ways)
 {
-    material gray = material_make(MATERIAL_DIFFUSE);
-    uint32_t index;
-    scene *s = scene_create();
-    if (!s)
+    photon *importons = photon_records_create(ASKED_POINTS);
+    if (!importons)
         return AG_ERROR_MEMORY;
-    gray.reflectance = rgb_gray(0.5f);
-    ag_status status = scene_add_material(s, &gray, &index);
-    for (int i = 0; i < DISCS && status == AG_OK; i++)
-        status = add_disc(s, &discs[i]);
+    rng random = rng_make(1, 2, 6);
+    for (uint32_t i = 0; i < ASKED_POINTS; i++) {
+        vec3 at = points[i].position;
+        vec3 from = {between(&random, -0.1f, 0.1f), between(&random, -0.1f, 0.1f), 0.4f};
+        importons[i] = (photon){.position = {at.x, at.y, at.z},
+                                .normal = direction_encode(points[i].normal),
+                                .direction = arrival_encode(vec3_normalize(vec3_sub(at, from)), true),
+                                .flux = flux_encode(rgb_gray(1.0f), i)};
+    }
+    return onward_ways_create(run, importons, ASKED_POINTS, out_ways);
+}
+
+static ag_status make_guide(const scene *s, run_context *run, const photon_tracing_settings *settings,
+                            emission_guide *out_guide)
+{
+    trial_counts counts = {0};
+    emission_trial *trials = malloc(TRIALS * sizeof *trials);
+    ag_status status = trials ? photon_tracing_try(s, run, settings, 0, TRIALS, trials, &counts) : AG_ERROR_MEMORY;
     if (status == AG_OK)
-        status = scene_commit(s, run, isa);
-    if (status == AG_OK)
-        *out_scene = s;
-    else
-        scene_destroy(s);
+        status = emission_guide_create(trials, TRIALS, 0.8f, NULL, out_guide);
+    free(trials);
     return status;
 }
 
+/* Makes what guides photons with these settings; *out is to be reset, on failure too. */
+static ag_status make_guidance(const scene *s, run_context *run, const photon_tracing_settings *settings, guidance *out)
+{
+    query_point points[ASKED_POINTS];
+    rng random = rng_make(1, 2, 5);
+    for (int i = 0; i < ASKED_POINTS; i++)
+        points[i] =
+            (query_point){{between(&random, -0.7f, -0.2f), between(&random, -0.5f, 0.5f), 0.0f}, {0.0f, 0.0f, 1.0f}};
+    *out = (guidance){0};
+    AG_TRY(importance_map_create(points, ASKED_POINTS, &out->asked));
+    AG_TRY(importance_map_create_smooth(points, ASKED_POINTS, 2 * ASKED_POINTS, s->bounds_min, s->bounds_max,
+                                        &out->onward));
+    AG_TRY(make_ways(run, points, &out->ways));
+    photon_tracing_settings asking = *settings;
+    asking.asked = &out->asked;
+    return make_guide(s, run, &asking, &out->guide);
+}
+
+/* Adds a map's photons by guided paths, of which some are split. */
+static ag_status add_guided_photons(const scene *s, run_context *run, photon_tracing_fn *trace,
+                                    photon_tracing_settings settings, hash128 *in_out_hash)
+{
+    guidance g;
+    ag_status status = make_guidance(s, run, &settings, &g);
+    settings.guide = &g.guide;
+    settings.asked = &g.asked;
+    settings.onward = settings.kind == PHOTON_GLOBAL ? &g.onward : NULL;
+    settings.ways = &g.ways;
+    settings.stored_share = 0.5f;
+    settings.split_above = 0.1f * rgb_max(s->light_power);
+    settings.caustic_root = 1.0f;
+    if (status == AG_OK)
+        status = add_photons(s, run, trace, &settings, in_out_hash);
+    guidance_reset(&g);
+    return status;
+}
+
+/* A number of photons is wanted of the global map by power alone; else a number of paths, since photons might be few.
+ */
+static ag_status add_traced(const scene *s, run_context *run, photon_tracing_fn *trace, hash128 *in_out_hash)
+{
+    photon_tracing_settings global = {.kind = PHOTON_GLOBAL,
+                                      .wanted = TRACED_PHOTONS,
+                                      .max_scatterings = SCATTERINGS_MAX,
+                                      .panes_are_direct = true,
+                                      .filters_textures = true,
+                                      .seed = 1};
+    AG_TRY(add_photons(s, run, trace, &global, in_out_hash));
+    global.wanted = PHOTONS;
+    global.paths = GUIDED_PATHS;
+    AG_TRY(add_guided_photons(s, run, trace, global, in_out_hash));
+    photon_tracing_settings caustic = global;
+    caustic.kind = PHOTON_CAUSTIC;
+    caustic.paths = CAUSTIC_PATHS;
+    AG_TRY(add_photons(s, run, trace, &caustic, in_out_hash));
+    return add_guided_photons(s, run, trace, caustic, in_out_hash);
+}
+
+/* --- estimates --- */
+
 /* Distributes photons of other colours over the floor, where they are dense or bright in parts, and evenly over the
  * smaller discs. */
-static ag_status make_map(run_context *run, const scene *surfaces, const built_in_disc discs[DISCS], uint32_t nearest,
-                          photon_map *out_map)
+static ag_status make_map(run_context *run, const scene *surfaces, const fingerprint_disc discs[FINGERPRINT_DISCS],
+                          uint32_t nearest, photon_map *out_map)
 {
     photon_set set = {.photons = photon_records_create(PHOTONS), .emitted_paths = PHOTONS};
     photon_map_settings settings = {.nearest = nearest, .surface_area = 2.0f * AG_PI, .surfaces = surfaces};
@@ -87,7 +150,7 @@ static ag_status make_map(run_context *run, const scene *surfaces, const built_i
         return AG_ERROR_MEMORY;
     rng random = rng_make(1, 2, 3);
     while (set.count < PHOTONS) {
-        const built_in_disc *d = set.count < PHOTONS_OF_FLOOR ? &discs[0] : &discs[set.count % DISCS];
+        const fingerprint_disc *d = set.count < PHOTONS_OF_FLOOR ? &discs[0] : &discs[set.count % FINGERPRINT_DISCS];
         float x = between(&random, -1.0f, 1.0f), y = between(&random, -1.0f, 1.0f);
         bool is_sparse = x > 0.1f, is_bright = x * y > 0.1f;
         rgb flux = {0.5f + rng_float(&random), rng_float(&random), 2.0f * rng_float(&random)};
@@ -103,7 +166,7 @@ static ag_status make_map(run_context *run, const scene *surfaces, const built_i
     return photon_map_create(run, &set, &settings, 0.0, 0.0, out_map);
 }
 
-/* At photons, and beside them, where no photon is the nearest by nothing. */
+/* Adds estimates and slots' words at photons; and estimates beside them, where no photon is the nearest by nothing. */
 static void add_estimates(const photon_map *map, irradiance_estimate_fn *find, photon_neighbor *scratch, hash128 *hash)
 {
     for (uint32_t i = 0; i < PHOTONS; i += ESTIMATE_EVERY) {
@@ -112,8 +175,8 @@ static void add_estimates(const photon_map *map, irradiance_estimate_fn *find, p
         at.x += i % (2 * ESTIMATE_EVERY) == 0 ? 0.0f : 0.0078125f;
         uint64_t rays = 0;
         rgb irradiance;
-        uint32_t answer[2] = {(uint32_t)find(map, at, normal, scratch, &rays, &irradiance)};
-        answer[1] = photon_map_encode_irradiance(map, irradiance, i);
+        irradiance_extent extent = find(map, at, normal, scratch, &rays, &irradiance);
+        uint32_t answer[2] = {(uint32_t)extent, irradiance_estimate_word(map, i, extent, irradiance)};
         HASH128_ADD(hash, irradiance);
         HASH128_ADD(hash, answer);
     }
@@ -132,8 +195,8 @@ static ag_status add_caustic_radius(const photon_map *global, hash128 *in_out_ha
     return AG_OK;
 }
 
-static ag_status add_map(run_context *run, const scene *surfaces, const built_in_disc discs[DISCS], uint32_t nearest,
-                         irradiance_estimate_fn *find, hash128 *in_out_hash)
+static ag_status add_map(run_context *run, const scene *surfaces, const fingerprint_disc discs[FINGERPRINT_DISCS],
+                         uint32_t nearest, irradiance_estimate_fn *find, hash128 *in_out_hash)
 {
     photon_map map;
     AG_TRY(make_map(run, surfaces, discs, nearest, &map));
@@ -149,16 +212,17 @@ static ag_status add_map(run_context *run, const scene *surfaces, const built_in
     return status;
 }
 
-ag_status estimate_fingerprint(const run_context *run, const char *isa, irradiance_estimate_fn *find, hash128 *out_hash)
+ag_status estimate_fingerprint(const run_context *run, const char *isa, photon_tracing_fn *trace,
+                               irradiance_estimate_fn *find, hash128 *out_hash)
 {
     run_context quiet; /* progress is not reported for the built-in scene */
     scene *surfaces;
-    built_in_disc discs[DISCS];
+    fingerprint_disc discs[FINGERPRINT_DISCS];
     hash128 hash = hash128_begin();
-    make_discs(discs);
     run_context_init(&quiet, run->pool, run->log, NULL, NULL);
-    ag_status status = make_scene(&quiet, isa, discs, &surfaces);
+    ag_status status = fingerprint_scene_create(&quiet, isa, discs, &surfaces);
     if (status == AG_OK) {
+        status = add_traced(surfaces, &quiet, trace, &hash);
         for (size_t i = 0; i < sizeof NEAREST / sizeof *NEAREST && status == AG_OK; i++)
             status = add_map(&quiet, surfaces, discs, NEAREST[i], find, &hash);
         scene_destroy(surfaces);

@@ -116,12 +116,6 @@ static bool publish(const photon_map *map, uint32_t index, uint32_t claimer, uin
     return irradiance_slot_publish(photon_map_slot(map, index), claimer, word);
 }
 
-/* Returns the key that decides how an irradiance photon's value is rounded. */
-static uint64_t rounding_key(const photon_map *map, uint32_t index)
-{
-    return map->is_steady ? photon_block_position_key(map->irradiance_photons.blocks, index) : index;
-}
-
 /* Computes and publishes the irradiance of a photon that the worker has claimed under that number. Returns the slot's
  * word. */
 static uint32_t compute(irradiance_cache *cache, uint32_t index, uint32_t claimer, unsigned worker_index)
@@ -133,10 +127,7 @@ static uint32_t compute(irradiance_cache *cache, uint32_t index, uint32_t claime
     irradiance_extent extent = estimate(cache, leaf, photon_block_position(blocks, index),
                                         direction_decode(photon_block_normal(blocks, index)), worker_index, &irradiance,
                                         map->reaches ? &map->reaches[index] : NULL);
-    uint32_t word = irradiance_word(IRRADIANCE_READY, PHOTON_NO_IRRADIANCE);
-    if (extent != IRRADIANCE_HOLDS_NOWHERE)
-        word = irradiance_word(extent == IRRADIANCE_HOLDS_IN_SIGHT ? IRRADIANCE_READY_IN_SIGHT : IRRADIANCE_READY,
-                               photon_map_encode_irradiance(map, irradiance, rounding_key(map, index)));
+    uint32_t word = irradiance_estimate_word(map, index, extent, irradiance);
     if (publish(map, index, claimer, word)) {
         cache->counters[worker_index].computed++;
         store_relaxed_u64(&cache->shown[worker_index].computed, cache->counters[worker_index].computed);

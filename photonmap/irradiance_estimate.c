@@ -307,3 +307,19 @@ rgb irradiance_estimate_seen(const photon_map *map, vec3 position, vec3 normal, 
     (void)find(map, position, normal, least_area, scratch, NULL, in_out_rays, &irradiance, NULL);
     return irradiance;
 }
+
+/* Returns the key that decides how an irradiance photon's value is rounded. */
+static uint64_t rounding_key(const photon_map *map, uint32_t irradiance_photon)
+{
+    return map->is_steady ? photon_block_position_key(map->irradiance_photons.blocks, irradiance_photon)
+                          : irradiance_photon;
+}
+
+uint32_t irradiance_estimate_word(const photon_map *map, uint32_t irradiance_photon, irradiance_extent extent,
+                                  rgb irradiance)
+{
+    if (extent == IRRADIANCE_HOLDS_NOWHERE)
+        return irradiance_word(IRRADIANCE_READY, PHOTON_NO_IRRADIANCE);
+    return irradiance_word(extent == IRRADIANCE_HOLDS_IN_SIGHT ? IRRADIANCE_READY_IN_SIGHT : IRRADIANCE_READY,
+                           photon_map_encode_irradiance(map, irradiance, rounding_key(map, irradiance_photon)));
+}

@@ -41,6 +41,10 @@ irradiance_extent irradiance_estimate_find_reach(const photon_map *map, vec3 pos
                                                  photon_neighbor *scratch, photon_search_hint *in_out_hint,
                                                  uint64_t *in_out_rays, rgb *out_irradiance, float *out_reach_squared);
 
+/* Returns the word that an irradiance photon's slot keeps of the estimate at it: a final one (irradiance_slot.h). */
+uint32_t irradiance_estimate_word(const photon_map *map, uint32_t irradiance_photon, irradiance_extent extent,
+                                  rgb irradiance);
+
 /* Returns the irradiance where it is seen directly, so that another estimate cannot take its place: on a surface too
  * small to hold one, the flux of its own photons over its area, m^2, along the surface as it bends, or over least_area
  * (> 0) where that is larger. The mean is then right on flat and on round surfaces that are not smaller than that; rods

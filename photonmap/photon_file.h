@@ -29,7 +29,7 @@ enum { PHOTON_FILE_SETTINGS_MAX = 1024 };
 typedef struct photon_file_key {
     hash128 scene;                           /* scene_hash_of_light */
     hash128 aim_view;                        /* the view that photons are aimed at; zeros: none */
-    hash128 estimates;                       /* estimate_fingerprint: the program's irradiances */
+    hash128 estimates;                       /* estimate_fingerprint: the program's photons and irradiances */
     char settings[PHOTON_FILE_SETTINGS_MAX]; /* all other settings that it depends on, lines "NOUN: VALUE" */
     char program[56];                        /* version and compiler */
     char machine[56]; /* all that may change bits: kind and maker of the processor, instruction set of ray traversal */

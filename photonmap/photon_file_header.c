@@ -128,7 +128,7 @@ static void describe_difference(const photon_file_key *is, const photon_file_key
     else if (strncmp(is->program, wanted->program, sizeof is->program) != 0)
         snprintf(out, size, "it was made by another program: '%s', this is '%s'", is->program, wanted->program);
     else if (!hash128_is_equal(is->estimates, wanted->estimates))
-        snprintf(out, size, "it was made by a program whose estimates of irradiance were others");
+        snprintf(out, size, "it was made by a program whose photons or estimates of irradiance were others");
     else if (!hash128_is_equal(is->scene, wanted->scene))
         snprintf(out, size, "it was made of another scene: shapes, lights, materials or textures differ");
     else if (strncmp(is->settings, wanted->settings, sizeof is->settings) != 0)

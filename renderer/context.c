@@ -34,8 +34,8 @@ ag_status context_estimates(ag_context *context, hash128 *out_hash)
 {
     if (!context->has_estimates) {
         unsigned callers_arithmetic = floating_point_enter();
-        ag_status status =
-            estimate_fingerprint(&context->run, context->isa, irradiance_estimate_find, &context->estimates);
+        ag_status status = estimate_fingerprint(&context->run, context->isa, photon_tracing_run,
+                                                irradiance_estimate_find, &context->estimates);
         floating_point_leave(callers_arithmetic);
         AG_TRY(status);
         context->has_estimates = true;

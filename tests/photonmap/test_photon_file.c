@@ -113,7 +113,7 @@ static void what_was_made_of_something_else_is_refused(void **state)
     EXPECT_REFUSED(strcpy(key.settings, "seed: 5\nnumber of photons: 300\nradius: 1\nmore: 1\n"), "other kinds");
     EXPECT_REFUSED(strcpy(key.settings, ""), "other kinds of settings");
     EXPECT_REFUSED(key.aim_view.bits[0]++, "aimed at another view");
-    EXPECT_REFUSED(key.estimates.bits[0]++, "estimates of irradiance were others");
+    EXPECT_REFUSED(key.estimates.bits[0]++, "photons or estimates of irradiance were others");
     EXPECT_REFUSED(strcpy(key.program, "1.2.4, gcc 12"), "another program");
     EXPECT_REFUSED(strcpy(key.machine, "x86_64 Somebody avx512"), "another machine");
     photon_file file;

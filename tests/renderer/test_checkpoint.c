@@ -171,7 +171,8 @@ static void test_header_has_estimates(void **state)
         checkpoint_header header;
         hash128 estimates;
         assert_int_equal(checkpoint_header_make(r, &header), AG_OK);
-        assert_int_equal(estimate_fingerprint(&s->context->run, s->context->isa, irradiance_estimate_find, &estimates),
+        assert_int_equal(estimate_fingerprint(&s->context->run, s->context->isa, photon_tracing_run,
+                                              irradiance_estimate_find, &estimates),
                          AG_OK);
         assert_false(hash128_is_equal(estimates, none));
         assert_true(hash128_is_equal(header.estimates, path ? none : estimates));
