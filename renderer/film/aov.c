@@ -174,11 +174,11 @@ static const struct {
     int width;
     bool needs_first_hit;
 } SUMS[FILM_SUM_COUNT] = {
-#define SUM_ROW(sum, width, needs_first_hit)           [sum] = {width, needs_first_hit},
-#define SUM_OF_HIT(sum, type, member, needs_first_hit) [sum] = {sizeof(type) / sizeof(float), needs_first_hit},
-    FILM_SUM_LIST(SUM_ROW, SUM_OF_HIT)
+#define SUM_ROW(sum, width, needs_first_hit)             [sum] = {width, needs_first_hit},
+#define SUM_OF_VALUE(sum, type, member, needs_first_hit) [sum] = {sizeof(type) / sizeof(float), needs_first_hit},
+    FILM_SUM_LIST(SUM_ROW, SUM_OF_VALUE, SUM_OF_VALUE)
 #undef SUM_ROW
-#undef SUM_OF_HIT
+#undef SUM_OF_VALUE
 };
 
 static int sum_width(const aov_layout *layout, film_sum sum)

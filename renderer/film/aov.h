@@ -8,14 +8,14 @@
 #include "film/cryptomatte.h"
 #include "film/eye_sample.h"
 
-/* The values that are summed over a pixel's samples: those of FIRST_HIT_LIST (eye_sample.h), in rows as they stand
- * there, and others, each with its number of channels and whether the sum alone needs what the camera ray meets first.
- * SUM_RADIANCE is always there, and at 0; of SUM_GROUPS there are 3 channels for each light group, and 3 for what came
- * through the photon map. */
-#define FILM_SUM_LIST(X, OF_HIT)                                                                                       \
+/* The values that are summed over a pixel's samples: those of SAMPLE_VALUE_LIST and FIRST_HIT_LIST (eye_sample.h), in
+ * rows as they stand there, and others, each with its number of channels and whether the sum alone needs what the
+ * camera ray meets first. SUM_RADIANCE is always there, and at 0; of SUM_GROUPS there are 3 channels for each light
+ * group, and 3 for what came through the photon map. */
+#define FILM_SUM_LIST(X, OF_SAMPLE, OF_HIT)                                                                            \
     X(SUM_RADIANCE, 3, false)                                                                                          \
-    X(SUM_ALPHA, 1, false) /* how much of the background is hidden: by a surface, or by media on the ray's way */      \
-    X(SUM_HITS, 1, true)   /* the ray met a surface */                                                                 \
+    SAMPLE_VALUE_LIST(OF_SAMPLE)                                                                                       \
+    X(SUM_HITS, 1, true) /* the ray met a surface */                                                                   \
     X(SUM_PARTS, 3 * LIGHT_PART_COUNT, false)                                                                          \
     X(SUM_GROUPS, 0, false)                                                                                            \
     FIRST_HIT_LIST(OF_HIT)                                                                                             \
@@ -25,11 +25,11 @@
     X(SUM_HIT_DEVELOPED, 3, false) /* these samples themselves */
 
 typedef enum film_sum {
-#define FILM_SUM_ENUM(sum, width, needs_first_hit)         sum,
-#define FIRST_HIT_ENUM(sum, type, member, needs_first_hit) sum,
-    FILM_SUM_LIST(FILM_SUM_ENUM, FIRST_HIT_ENUM)
+#define FILM_SUM_ENUM(sum, width, needs_first_hit)            sum,
+#define SAMPLE_VALUE_ENUM(sum, type, member, needs_first_hit) sum,
+    FILM_SUM_LIST(FILM_SUM_ENUM, SAMPLE_VALUE_ENUM, SAMPLE_VALUE_ENUM)
 #undef FILM_SUM_ENUM
-#undef FIRST_HIT_ENUM
+#undef SAMPLE_VALUE_ENUM
         FILM_SUM_COUNT
 } film_sum;
 

@@ -21,8 +21,13 @@ enum { LIGHT_PART_COUNT = PART_SPECULAR + 1 };
 /* Groups of lights by their names; behind them what comes through the photon map, of which no lamp is known. */
 enum { LIGHT_GROUPS_MAX = 32 };
 
-/* The values of a camera ray's first hit that are summed over a pixel: of each its sum (aov.h), type and member, and
- * whether the sum alone needs what the ray meets first. Types consist of floats, all of which are summed. */
+/* The values of a camera sample that are summed over a pixel, beside its light: of each its sum (aov.h), type and
+ * member, and whether the sum alone needs what the ray meets first. Types consist of floats, all of which are summed. A
+ * value that is 0 where nothing sets it needs no more than its row here, and where it is set. */
+#define SAMPLE_VALUE_LIST(X)                                                                                           \
+    X(SUM_ALPHA, float, alpha, false) /* share of the background that is hidden, [0, 1]; in media on average */
+
+/* The same of its ray's first hit, which are summed where there is one. */
 #define FIRST_HIT_LIST(X)                                                                                              \
     X(SUM_ALBEDO, rgb, albedo, true)                                                                                   \
     X(SUM_NORMAL, vec3, normal, true)                      /* of shading, on the eye's side */                         \
@@ -46,7 +51,9 @@ typedef struct sample_layers {
     rgb parts[LIGHT_PART_COUNT];
     rgb sky; /* of the part DIRECT, from infinite lights */
     rgb groups[LIGHT_GROUPS_MAX + 1];
-    float alpha; /* the share of the background that is hidden, [0, 1]; right on average where media scatter */
+#define SAMPLE_VALUE_MEMBER(sum, type, member, needs_first_hit) type member;
+    SAMPLE_VALUE_LIST(SAMPLE_VALUE_MEMBER)
+#undef SAMPLE_VALUE_MEMBER
     first_hit first;
 } sample_layers;
 

@@ -222,26 +222,31 @@ static void add_rgb(double *sums, rgb value)
     sums[2] += (double)value.b;
 }
 
-/* Where the members of first_hit lie that are summed; the width of all other sums is 0 here. */
-static const struct {
+/* Where in sample_layers the members lie that are summed as they are; the width of all other sums is 0 here. */
+typedef struct summed_value {
     size_t offset;
     int width;
-} OF_HIT[FILM_SUM_COUNT] = {
+    bool is_of_hit;
+} summed_value;
+static const summed_value VALUES[FILM_SUM_COUNT] = {
 #define SUM_ROW(sum, width, needs_first_hit)
+#define SUM_OF_SAMPLE(sum, type, member, needs_first_hit)                                                              \
+    [sum] = {offsetof(sample_layers, member), sizeof(type) / sizeof(float), false},
 #define SUM_OF_HIT(sum, type, member, needs_first_hit)                                                                 \
-    [sum] = {offsetof(first_hit, member), sizeof(type) / sizeof(float)},
-    FILM_SUM_LIST(SUM_ROW, SUM_OF_HIT)
+    [sum] = {offsetof(sample_layers, first) + offsetof(first_hit, member), sizeof(type) / sizeof(float), true},
+    FILM_SUM_LIST(SUM_ROW, SUM_OF_SAMPLE, SUM_OF_HIT)
 #undef SUM_ROW
+#undef SUM_OF_SAMPLE
 #undef SUM_OF_HIT
 };
 
-static void add_first_hit(const aov_layout *layout, double *sums, const first_hit *first)
+static void add_values(const aov_layout *layout, double *sums, const sample_layers *l)
 {
     for (film_sum sum = 0; sum < FILM_SUM_COUNT; sum++) {
-        if (!aov_has(layout, sum))
+        if (!aov_has(layout, sum) || (VALUES[sum].is_of_hit && !l->first.is_hit))
             continue;
-        const float *values = (const float *)(const void *)((const char *)first + OF_HIT[sum].offset);
-        for (int i = 0; i < OF_HIT[sum].width; i++)
+        const float *values = (const float *)(const void *)((const char *)l + VALUES[sum].offset);
+        for (int i = 0; i < VALUES[sum].width; i++)
             sums[layout->offset[sum] + i] += (double)values[i];
     }
 }
@@ -268,14 +273,12 @@ static void add_layers(ag_film *film, size_t pixel, double *sums, const eye_samp
         add_rgb(sums + offset[SUM_PARTS] + 3 * i, l->parts[i]);
     for (int i = 0; aov_has(layout, SUM_GROUPS) && i <= layout->group_count; i++)
         add_rgb(sums + offset[SUM_GROUPS] + 3 * i, l->groups[i]);
-    if (aov_has(layout, SUM_ALPHA))
-        sums[offset[SUM_ALPHA]] += (double)l->alpha;
+    add_values(layout, sums, l);
     if (!first->is_hit)
         return;
 
     if (aov_has(layout, SUM_HITS))
         sums[offset[SUM_HITS]] += 1.0;
-    add_first_hit(layout, sums, first);
     if (aov_has(layout, SUM_HIT_SQUARES))
         add_squares(film, sums + offset[SUM_HIT_SQUARES], sums + offset[SUM_HIT_DEVELOPED], sample->radiance);
     const uint32_t ids[CRYPTOMATTE_KIND_COUNT] = {first->object_id, first->material_id};
