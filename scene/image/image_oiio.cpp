@@ -2,13 +2,13 @@
  * written other than as EXR. Its exceptions end here, as a status and a text. Flow: file -> [here] -> image_reader.c;
  * image_file.c (renderer) -> [here] -> bytes in memory. Threads: any; OpenImageIO itself is told to use none of its
  * own. */
+#include "image/image_layout.h"
 #include "image/image_module.h"
 #include "image/image_signature.h"
 
 #include <OpenImageIO/Imath.h>
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
-#include <OpenImageIO/strutil.h>
 
 #include <algorithm>
 #include <climits>
@@ -38,9 +38,6 @@ const std::uint64_t values_per_byte = std::uint64_t(1) << 16;
 const std::uint64_t piece_bytes = std::uint64_t(1) << 20;
 /* Strips of a TIFF file that are larger are read row by row, which takes zlib twice the time of a whole strip. */
 const std::uint64_t largest_strip_bytes = std::uint64_t(1) << 23;
-
-const int largest_tile_bits = 9; /* TEXTURE_TILE_BITS_MAX */
-const int least_tile_bits = 3;   /* reading smaller ones one by one costs more than their pixels are worth */
 
 struct cancelled {
 }; /* thrown where reading is to end */
@@ -213,41 +210,19 @@ void check_size(const OIIO::ImageSpec &spec, std::uint64_t file_size)
                                  " channels, which a file of " + std::to_string(file_size) + " bytes cannot hold");
 }
 
-/* How many channels from here on are red, green, blue and alpha of one layer, by their names. */
-int count_colors(const std::vector<std::string> &names, size_t first)
-{
-    static const char *const suffixes[4][2] = {{"R", "RED"}, {"G", "GREEN"}, {"B", "BLUE"}, {"A", "ALPHA"}};
-    std::string layer;
-    int count = 0;
-    for (size_t k = 0; k < 4 && first + k < names.size(); k++, count++) {
-        const std::string &name = names[first + k];
-        const size_t dot = name.rfind('.');
-        const std::string before = dot == std::string::npos ? std::string() : name.substr(0, dot);
-        const std::string last = dot == std::string::npos ? name : name.substr(dot + 1);
-        if (k > 0 && before != layer)
-            break;
-        layer = before;
-        if (!OIIO::Strutil::iequals(last, suffixes[k][0]) && !OIIO::Strutil::iequals(last, suffixes[k][1]))
-            break;
-    }
-    return count;
-}
-
 struct channel_range {
     int begin, count;
 };
 
-/* The channels that are the picture: of many layers the first that has red, green and blue, with alpha where that layer
- * has it. All channels where none has. */
+/* The channels that are the picture: all where no layer has red, green and blue. */
 channel_range find_colors(const OIIO::ImageSpec &spec)
 {
-    const std::vector<std::string> &names = spec.channelnames;
-    for (size_t first = 0; first + 3 <= names.size(); first++) {
-        const int count = count_colors(names, first);
-        if (count >= 3)
-            return {static_cast<int>(first), count};
-    }
-    return {0, spec.nchannels};
+    std::vector<const char *> names;
+    for (const std::string &name : spec.channelnames)
+        names.push_back(name.c_str());
+    int begin;
+    const int count = image_layout_find_colors(names.data(), static_cast<int>(names.size()), &begin);
+    return count > 0 ? channel_range{begin, count} : channel_range{0, spec.nchannels};
 }
 
 void end_if_cancelled(const image_request &request)
@@ -256,23 +231,13 @@ void end_if_cancelled(const image_request &request)
         throw cancelled();
 }
 
-/* The rows that OpenEXR packs together, by its file format's table of compressions. */
-int exr_block_rows(const std::string &compression)
-{
-    if (compression == "none" || compression == "rle" || compression == "zips")
-        return 1;
-    if (compression == "zip" || compression == "pxr24")
-        return 16;
-    return compression == "piz" || compression == "b44" || compression == "b44a" || compression == "dwaa" ? 32 : 256;
-}
-
 /* The rows that are best read together. Those of a strip of a TIFF file can be had one by one, unless each channel has
  * strips of its own: then each row would be searched from the beginning of all of them. */
 int block_rows(const OIIO::ImageInput &input, const OIIO::ImageSpec &spec)
 {
     const std::string format = input.format_name();
     if (format == "openexr")
-        return exr_block_rows(spec.get_string_attribute("compression"));
+        return image_layout_exr_rows(spec.get_string_attribute("compression").c_str());
     if (format != "tiff")
         return 1;
     const int told = spec.get_int_attribute("tiff:RowsPerStrip", 0);
@@ -482,26 +447,8 @@ ag_status decode_memory(const char *extension, const unsigned char *bytes, size_
 
 /* --- parts of files that hold tiles and coarser levels --- */
 
-/* -1: it is no power of two, or beyond what is held at once. */
-int bits_of_side(int side)
-{
-    for (int bits = 0; bits <= largest_tile_bits; bits++)
-        if (side == 1 << bits)
-            return bits;
-    return -1;
-}
-
 /* Other readers have no coarser levels, and some of them decode a picture as they open it. */
 bool may_have_levels(const std::string &reader) { return reader == "openexr" || reader == "tiff" || reader == "dds"; }
-
-bool is_half_of(int side, int before) { return side == std::max(before / 2, 1) || side == (before + 1) / 2; }
-
-/* Whether tiles of that side are worth reading one by one, of a level so wide or high. */
-bool is_usable_tile(int tile_side, int level_side)
-{
-    const int bits = bits_of_side(tile_side);
-    return bits >= least_tile_bits || (bits >= 0 && level_side <= tile_side);
-}
 
 /* Whether a level is one that parts are read of: a flat picture that fills its frame, in tiles, as the first but for
  * its size, which is half of the one before. */
@@ -510,13 +457,14 @@ bool is_usable_level(const OIIO::ImageSpec &spec, const image_levels_header &hea
     const image &picture = header.picture;
     if (spec.depth > 1 || spec.deep || spec.x != 0 || spec.y != 0 || spec.full_x != 0 || spec.full_y != 0 ||
         spec.full_width != spec.width || spec.full_height != spec.height || spec.tile_depth > 1 ||
-        !is_usable_tile(spec.tile_width, spec.width) || !is_usable_tile(spec.tile_height, spec.height))
+        !image_layout_is_usable_tile(spec.tile_width, spec.width) ||
+        !image_layout_is_usable_tile(spec.tile_height, spec.height))
         return false;
     if (header.level_count == 0)
         return true;
     const image_level &before = header.levels[header.level_count - 1];
     return spec.nchannels == header.file_channel_count && sample_type_of(spec.format) == picture.type &&
-           is_half_of(spec.width, before.width) && is_half_of(spec.height, before.height);
+           image_layout_is_half(spec.width, before.width) && image_layout_is_half(spec.height, before.height);
 }
 
 ag_status open_levels(const char *path, const char *name, void **out_file, image_levels_header *out_header,
@@ -541,8 +489,8 @@ ag_status open_levels(const char *path, const char *name, void **out_file, image
         header.picture.channel_count = find_colors(spec).count;
         check_size(spec, OIIO::Filesystem::file_size(path));
         while (header.level_count < IMAGE_LEVELS_MAX && is_usable_level(spec, header)) {
-            header.levels[header.level_count++] = {spec.width, spec.height, bits_of_side(spec.tile_width),
-                                                   bits_of_side(spec.tile_height)};
+            header.levels[header.level_count++] = {spec.width, spec.height, image_layout_tile_bits(spec.tile_width),
+                                                   image_layout_tile_bits(spec.tile_height)};
             if (!input->seek_subimage(0, header.level_count))
                 break;
             spec = input->spec();
