@@ -88,15 +88,18 @@ static transport make_transport(ag_context *context, const scene *s, const ag_re
 /* --- settings that are left open --- */
 
 /* Few samples do not show what many photons are for, and tracing these would be most of the work: in three interiors
- * at a sample or four of 57,600 pixels, error times CPU time is least at one to four photons for each sample. */
+ * at a sample or four of 57,600 pixels, error times CPU time is least at one to four photons for each sample. With a
+ * level of noise, most pixels of such rooms end at the least number of samples. */
 enum { PHOTONS_PER_SAMPLE = 2, PHOTONS_LEAST = 131072 };
 
 static uint64_t automatic_photon_count(const ag_render_settings *settings)
 {
     if (settings->photon_map_file || settings->photon_paths > 0)
         return AG_DEFAULT_PHOTONS_MOST;
+    const bool has_level = settings->noise_level > 0.0f;
+    const int most = settings->samples_per_pixel, least = settings->noise_min_samples;
     const double samples =
-        (double)settings->width * (double)settings->height * (double)sample_split_expected_samples(settings);
+        (double)settings->width * (double)settings->height * (double)(has_level && least < most ? least : most);
     return (uint64_t)fmin(fmax(PHOTONS_PER_SAMPLE * samples, PHOTONS_LEAST), AG_DEFAULT_PHOTONS_MOST);
 }
 
