@@ -174,7 +174,7 @@ static const setting_row ROWS[] = {
               .section = "Light",
               .help = "photons to store in the global map (default: by the number of samples, 1000000 at most)",
               .manual = "Photons to store in the global map. The default is two for each camera sample of the whole "
-                        "frame, from 131072 to 1000000; with *--noise* for each of the 16 that every pixel has. With "
+                        "frame, from 131072 to 1000000; with *--noise* for each of those of *--min-spp*. With "
                         "*--photon-map* or *--photon-paths* it is 1000000. May be written as 2e6.",
               .is_of_photon_map = true},
      FIELD(photon_count),

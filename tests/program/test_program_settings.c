@@ -110,6 +110,7 @@ static void test_photons_by_samples(void **state)
     EXPECT_PHOTONS(131072, 65536, "--spp=1", "--size=8x6");
     EXPECT_PHOTONS(160000, 80000, "--spp=8", "--size=100x100", "--cropwindow=0,0.1,0,0.1");
     EXPECT_PHOTONS(192000, 96000, "--noise=1", "--spp=1024", "--size=100x60", "--cropwindow=0,0.1,0,0.1");
+    EXPECT_PHOTONS(240000, 120000, "--noise=1", "--min-spp=20", "--size=100x60", "--cropwindow=0,0.1,0,0.1");
     EXPECT_PHOTONS(144000, 72000, "--noise=1", "--spp=12", "--size=100x60", "--cropwindow=0,0.1,0,0.1");
     EXPECT_PHOTONS(1000000, 500000, "--spp=1024", "--size=100x100", "--cropwindow=0,0.02,0,0.02");
     EXPECT_PHOTONS(1000000, 500000, "--spp=1", "--size=8x6", "--photon-map=n.map");
