@@ -154,7 +154,9 @@ static ag_status add_lamps(scene *s, const parts *of)
 
 static ag_status fill(scene *s, const fingerprint_disc discs[FINGERPRINT_DISCS])
 {
-    const medium fog = {.sigma_a = {0.3f, 0.5f, 0.7f}, .sigma_s = rgb_gray(12.0f), .phase = {.g = 0.4f}};
+    const medium fog = {.kind = MEDIUM_HOMOGENEOUS,
+                        .phase = {.g = 0.4f},
+                        .as.homogeneous = {.sigma_a = {0.3f, 0.5f, 0.7f}, .sigma_s = {12.0f, 12.0f, 12.0f}}};
     parts of;
     uint32_t index;
     AG_TRY(add_materials(s, &of));

@@ -65,6 +65,8 @@ void scene_destroy(scene *s)
     for (uint32_t i = 0; i < s->material_table_count; i++)
         material_table_release(s->material_tables[i]);
     free(s->material_tables);
+    for (uint32_t i = 0; i < s->medium_count; i++)
+        medium_reset(&s->media[i]);
     free(s->media);
     free(s->textures);
     free(s->texture_images);
@@ -202,8 +204,11 @@ ag_status scene_add_texture_image(scene *s, texture_image *item, uint32_t *out_i
 
 ag_status scene_add_medium(scene *s, const medium *item, uint32_t *out_index)
 {
-    if (!grow((void **)&s->media, s->medium_count, sizeof *s->media))
+    if (!grow((void **)&s->media, s->medium_count, sizeof *s->media)) {
+        medium copy = *item;
+        medium_reset(&copy);
         return AG_ERROR_MEMORY;
+    }
     *out_index = s->medium_count;
     s->media[s->medium_count++] = *item;
     return AG_OK;

@@ -126,6 +126,7 @@ ag_status scene_add_texture_image(scene *s, texture_image *item, uint32_t *out_i
 /* Finds the light group of a name, or adds it; "default" must be the first. Errors: AG_ERROR_MEMORY, AG_ERROR_SCENE
  * (more than SCENE_LIGHT_GROUPS_MAX; nothing is logged). */
 ag_status scene_light_group(scene *s, const char *name, uint32_t *out_index);
+/* The scene takes over what the medium owns, on failure too, when it is freed. */
 ag_status scene_add_medium(scene *s, const medium *item, uint32_t *out_index);
 ag_status scene_add_shape(scene *s, const shape *item, uint32_t *out_index);
 /* Adds curves; they are joined with the shape before where they differ in nothing but their segments, since fur has

@@ -114,8 +114,9 @@ static bool come_through_space(const scene *s, const light *l, light_emission *o
         return true;
     if (scene_intersect(s, scene_ray_make(out->origin, out->direction), INFINITY, &hit) && hit.has_medium_interface)
         out->medium = vec3_dot(hit.geometric_normal, out->direction) < 0.0f ? hit.medium_outside : hit.medium_inside;
+    const medium_stretch way = {out->origin, vec3_negate(out->direction), INFINITY};
     if (out->medium < s->medium_count)
-        out->flux = rgb_mul(out->flux, medium_transmittance(&s->media[out->medium], INFINITY));
+        out->flux = rgb_mul(out->flux, medium_transmittance(&s->media[out->medium], &way));
     return !rgb_is_black(out->flux);
 }
 

@@ -98,8 +98,7 @@ static void make_slab(const scene *s, const surface_hit *hit, bsdf *b)
     b->is_pane = true;
     b->lobe_count = 0;
     bsdf_add_lobe(b, LOBE_SLAB, BSDF_TRACED, true, 1.0f);
-    b->material.slab =
-        slab_point_at(&b->material, fabsf(vec3_dot(b->out, b->geometric_normal)), hit->slab.thickness, between);
+    b->material.slab = slab_point_at(&b->material, fabsf(vec3_dot(b->out, b->geometric_normal)), hit, between);
 }
 
 void bsdf_init(const scene *s, const surface_hit *hit, vec3 out, bsdf *b)

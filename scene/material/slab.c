@@ -21,7 +21,15 @@ static float sum_series(float in, float within, float left, float out)
     return in * left * out / fmaxf(1.0f - to_and_fro * to_and_fro, 1e-12f);
 }
 
-slab_point slab_point_at(const material_point *face, float cosine, float thickness, const medium *between)
+/* The way within is as long as the bent one, and lies where the straight one does. */
+static rgb transmittance_within(const surface_hit *hit, float cosine_within, const medium *between)
+{
+    const medium_stretch way = {hit->position, vec3_normalize(vec3_sub(hit->slab.exit, hit->position)),
+                                hit->slab.thickness / cosine_within};
+    return medium_transmittance(between, &way);
+}
+
+slab_point slab_point_at(const material_point *face, float cosine, const surface_hit *hit, const medium *between)
 {
     const material_type *type = material_type_of(face->kind);
     float ior = type->index(face), c = fminf(cosine, 1.0f), sin2_within = (1.0f - c * c) / (ior * ior);
@@ -30,7 +38,7 @@ slab_point slab_point_at(const material_point *face, float cosine, float thickne
         return p;
     float cosine_within = sqrtf(1.0f - sin2_within);
     material_faces f = type->faces(face, c, cosine_within);
-    rgb left = between ? medium_transmittance(between, thickness / cosine_within) : rgb_gray(1.0f);
+    rgb left = between ? transmittance_within(hit, cosine_within, between) : rgb_gray(1.0f);
     p.through.r = sum_series(f.in.r, f.inner.r, left.r, f.out.r);
     p.through.g = sum_series(f.in.g, f.inner.g, left.g, f.out.g);
     p.through.b = sum_series(f.in.b, f.inner.b, left.b, f.out.b);

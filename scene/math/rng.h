@@ -8,6 +8,7 @@
 #include "math/vec3.h"
 
 #include <stdint.h>
+#include <string.h>
 
 typedef struct rng {
     uint64_t state;
@@ -22,6 +23,18 @@ static inline uint64_t hash_mix64(uint64_t z)
 }
 
 static inline uint64_t hash_combine(uint64_t a, uint64_t b) { return hash_mix64(a * 0x9e3779b97f4a7c15u + b); }
+
+/* Returns a number that depends on all bits of a ray and of the key, for what a ray meets by chance: it then always
+ * meets the same. */
+static inline uint64_t hash_of_ray(uint64_t key, vec3 origin, vec3 direction)
+{
+    const float values[6] = {origin.x, origin.y, origin.z, direction.x, direction.y, direction.z};
+    uint32_t bits[6];
+    memcpy(bits, values, sizeof bits);
+    for (int i = 0; i < 6; i += 2)
+        key = hash_combine(key, ((uint64_t)bits[i] << 32) | bits[i + 1]);
+    return key;
+}
 
 /* stream: one of a few purposes; index: the path or pixel sample. */
 static inline rng rng_make(uint64_t seed, uint64_t stream, uint64_t index)

@@ -2,8 +2,7 @@
 #include "medium/medium_flight.h"
 
 #include "math/exponential.h"
-
-static float channel_of(rgb color, int channel) { return channel == 0 ? color.r : channel == 1 ? color.g : color.b; }
+#include "medium/medium_type.h"
 
 medium_flight medium_flight_begin(rgb carried, vec2 u)
 {
@@ -19,27 +18,12 @@ medium_flight medium_flight_begin(rgb carried, vec2 u)
                            .density = rgb_gray(1.0f)};
 }
 
-bool medium_flight_pass(medium_flight *f, const medium *m, float distance, float *out_distance)
+bool medium_flight_pass(medium_flight *f, const medium *m, const medium_stretch *way, float *out_distance)
 {
-    if (!medium_scatters(m)) {
-        f->transmittance = rgb_mul(f->transmittance, medium_transmittance(m, distance));
-        return false;
-    }
-    rgb extinction = medium_extinction(m);
-    float of_channel = channel_of(extinction, f->channel);
-    bool is_scattered = of_channel > 0.0f && f->thickness < of_channel * distance;
-    if (is_scattered)
-        *out_distance = distance = f->thickness / of_channel;
-    else if (of_channel > 0.0f)
-        f->thickness -= of_channel * distance;
-    rgb left = medium_transmittance(m, distance);
-    f->transmittance = rgb_mul(f->transmittance, left);
-    f->density = rgb_mul(f->density, left);
-    if (is_scattered) {
-        f->transmittance = rgb_mul(f->transmittance, m->sigma_s);
-        f->density = rgb_mul(f->density, extinction);
-    }
-    return is_scattered;
+    if (medium_scatters(m))
+        return medium_type_of(m->kind)->pass(m, way, f, out_distance);
+    f->transmittance = rgb_mul(f->transmittance, medium_transmittance(m, way));
+    return false;
 }
 
 rgb medium_flight_weight(const medium_flight *f)

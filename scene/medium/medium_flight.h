@@ -26,9 +26,9 @@ typedef struct medium_flight {
  * after each. */
 medium_flight medium_flight_begin(rgb carried, vec2 u);
 
-/* Goes on by a distance, in scene units, which may be INFINITY, within one medium. Returns whether light is scattered
- * on the way, and then writes the distance to there, less than the whole. */
-bool medium_flight_pass(medium_flight *f, const medium *m, float distance, float *out_distance);
+/* Goes on over a stretch within one medium. Returns whether light is scattered on the way, and then writes the distance
+ * from the stretch's origin to there, less than its length. */
+bool medium_flight_pass(medium_flight *f, const medium *m, const medium_stretch *way, float *out_distance);
 
 /* Returns the weight of the light at the end of the flight: transmittance over the density of all channels, by their
  * probabilities. A channel that carries nothing has none. */

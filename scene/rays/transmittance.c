@@ -8,9 +8,11 @@
 #include "medium/medium_flight.h"
 #include "rays/slab_faces.h"
 
-static rgb transmittance_in(const scene *s, uint32_t medium_index, float distance)
+/* The share of light that is left over a distance from a point of a ray of unit direction, in the ray's medium. */
+static rgb transmittance_from(const scene *s, const scene_ray *ray, vec3 from, float distance)
 {
-    return medium_index < s->medium_count ? medium_transmittance(&s->media[medium_index], distance) : rgb_gray(1.0f);
+    const medium_stretch way = {from, ray->direction, distance};
+    return ray->medium < s->medium_count ? medium_transmittance(&s->media[ray->medium], &way) : rgb_gray(1.0f);
 }
 
 /* Lamps with a mix of materials stay where they are: their light starts all over them. */
@@ -77,16 +79,17 @@ static ray_end follow(const scene *s, scene_ray *ray, float length, bool through
         bool is_hit = scene_intersect(s, *ray, length, out_hit);
         float to_end = is_bounded ? distance_between(from, end) : INFINITY;
         float distance = is_hit ? distance_between(from, out_hit->position) : to_end;
+        const medium_stretch way = {from, ray->direction, distance};
         float free_path;
         if (flight && ray->medium < s->medium_count &&
-            medium_flight_pass(flight, &s->media[ray->medium], distance, &free_path)) {
+            medium_flight_pass(flight, &s->media[ray->medium], &way, &free_path)) {
             surface_hit hit = *out_hit;
             scatter_at(ray, from, free_path, is_hit ? &hit : NULL, travelled, out_hit);
             return RAY_ENDS_IN_MEDIUM;
         }
         travelled += distance;
         if (in_out_left)
-            *in_out_left = rgb_mul(*in_out_left, transmittance_in(s, ray->medium, distance));
+            *in_out_left = rgb_mul(*in_out_left, transmittance_from(s, ray, from, distance));
         if (!is_hit || (in_out_left && rgb_is_black(*in_out_left)) || (flight && rgb_is_black(flight->transmittance)))
             return RAY_ENDS_NOWHERE;
         slab_meet(s, ray, out_hit);
@@ -135,7 +138,7 @@ bool transmittance_intersect(const scene *s, scene_ray *ray, uint64_t *in_out_cu
     bool is_hit = scene_intersect(s, *ray, INFINITY, out_hit);
     if (is_hit)
         slab_meet(s, ray, out_hit);
-    *out_transmittance = transmittance_in(s, ray->medium, is_hit ? out_hit->distance : INFINITY);
+    *out_transmittance = transmittance_from(s, ray, ray->origin, is_hit ? out_hit->distance : INFINITY);
     return is_hit && !rgb_is_black(*out_transmittance);
 }
 
@@ -160,17 +163,17 @@ static float normalize_direction(scene_ray *ray)
 
 rgb transmittance_of_ray(const scene *s, scene_ray ray, float reach, uint64_t *in_out_cut)
 {
-    if (!s->has_interfaces) {
-        if (scene_occluded(s, ray, reach))
-            return rgb_gray(0.0f);
-        return ray.medium == SCENE_NO_MEDIUM ? rgb_gray(1.0f)
-                                             : transmittance_in(s, ray.medium, reach * vec3_length(ray.direction));
-    }
+    if (!s->has_interfaces && scene_occluded(s, ray, reach))
+        return rgb_gray(0.0f);
+    if (transmittance_is_one(s, &ray))
+        return rgb_gray(1.0f);
     surface_hit hit;
     rgb left = rgb_gray(1.0f);
     float unit = normalize_direction(&ray);
     if (!(unit > 0.0f))
         return left; /* from a point to itself */
+    if (!s->has_interfaces)
+        return transmittance_from(s, &ray, ray.origin, reach * unit);
     return follow(s, &ray, reach * unit, false, in_out_cut, &hit, &left, NULL) ? rgb_gray(0.0f) : left;
 }
 

@@ -4,8 +4,6 @@
 #include "math/rng.h"
 #include "scene.h"
 
-#include <string.h>
-
 float alpha_at(const scene *s, const shape *at, const surface_hit *hit)
 {
     float alpha = at->alpha;
@@ -26,15 +24,11 @@ float alpha_at_hit(const scene *s, const surface_hit *hit)
 }
 
 /* Uniform in [0, 1), another number for every ray and surface. */
-static float hash_of_ray(uint32_t shape_index, uint32_t primitive_index, uint32_t crossing, vec3 origin, vec3 direction)
+static float number_of_ray(uint32_t shape_index, uint32_t primitive_index, uint32_t crossing, vec3 origin,
+                           vec3 direction)
 {
-    const float values[6] = {origin.x, origin.y, origin.z, direction.x, direction.y, direction.z};
-    uint32_t bits[6];
-    memcpy(bits, values, sizeof bits);
-    uint64_t hash = hash_combine(((uint64_t)shape_index << 32) | primitive_index, crossing);
-    for (int i = 0; i < 6; i += 2)
-        hash = hash_combine(hash, ((uint64_t)bits[i] << 32) | bits[i + 1]);
-    return (float)(hash >> 40) * 0x1p-24f;
+    uint64_t key = hash_combine(((uint64_t)shape_index << 32) | primitive_index, crossing);
+    return (float)(hash_of_ray(key, origin, direction) >> 40) * 0x1p-24f;
 }
 
 bool alpha_stops_ray(const scene *s, const shape *at, uint32_t primitive_index, float u, float v, uint32_t crossing,
@@ -48,5 +42,5 @@ bool alpha_stops_ray(const scene *s, const shape *at, uint32_t primitive_index, 
     float alpha = alpha_at(s, at, &hit); /* which reads the hit for a texture only */
     if (alpha <= 0.0f || alpha >= 1.0f || alpha_rule == RAY_MEETS_ALPHA)
         return alpha > 0.0f;
-    return hash_of_ray((uint32_t)(at - s->shapes), primitive_index, crossing, origin, direction) < alpha;
+    return number_of_ray((uint32_t)(at - s->shapes), primitive_index, crossing, origin, direction) < alpha;
 }

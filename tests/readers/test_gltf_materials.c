@@ -79,12 +79,12 @@ static void factors(void **state)
     assert_true(r.scene->shapes[0].medium_outside == SCENE_NO_MEDIUM);
     assert_int_equal(r.scene->shapes[0].medium_inside, 0);
     assert_int_equal(r.scene->medium_count, 1);
-    assert_rgb(r.scene->media[0].sigma_a, 0.5 * log(2), 0, 0.5 * log(1e6), 1e-5);
+    assert_rgb(r.scene->media[0].as.homogeneous.sigma_a, 0.5 * log(2), 0, 0.5 * log(1e6), 1e-5);
     reading_destroy(&r);
     /* Blender's Volume Absorption of that colour and of density 1/2 */
     r = gltf_read(by_blender(material_text(ABSORBING, "")));
     assert_int_equal(r.status, AG_OK);
-    assert_rgb(r.scene->media[0].sigma_a, 0.25, 0, 0.5, 1e-6);
+    assert_rgb(r.scene->media[0].as.homogeneous.sigma_a, 0.25, 0, 0.5, 1e-6);
     expect_said(&r, AG_LOG_INFO, "glass absorbs as Blender's Volume Absorption does");
     reading_destroy(&r);
     static const char *const THIN[] = {

@@ -15,7 +15,7 @@ static rgb absorption_of(const char *parameters, int warnings)
     assert_int_equal(r.status, AG_OK);
     assert_int_equal(r.count[AG_LOG_WARNING], warnings);
     assert_int_equal(r.scene->medium_count, 1);
-    rgb sigma_a = r.scene->media[0].sigma_a;
+    rgb sigma_a = r.scene->media[0].as.homogeneous.sigma_a;
     reading_destroy(&r);
     return sigma_a;
 }
@@ -59,7 +59,7 @@ static void scattering_is_read(void **state)
                  CASES[i].parameters);
         reading r = reading_of(text);
         const medium *m = &r.scene->media[0];
-        assert_rgb(m->sigma_s, CASES[i].r, CASES[i].g, CASES[i].b, 1e-4);
+        assert_rgb(m->as.homogeneous.sigma_s, CASES[i].r, CASES[i].g, CASES[i].b, 1e-4);
         assert_true((double)m->phase.g == CASES[i].mean_cosine);
         assert_int_equal(medium_scatters(m), CASES[i].b > 0);
         reading_destroy(&r);
@@ -79,7 +79,7 @@ static void absorption_is_the_same_everywhere(void **state)
                  BEFORE[i]);
         reading r = reading_of(text);
         double scale = i == 0 ? 1.0 : 3.0;
-        assert_rgb(r.scene->media[0].sigma_a, scale, 2.0 * scale, 3.0 * scale, 0);
+        assert_rgb(r.scene->media[0].as.homogeneous.sigma_a, scale, 2.0 * scale, 3.0 * scale, 0);
         reading_destroy(&r);
     }
 }
@@ -126,7 +126,7 @@ static void what_varies_gets_its_mean(void **state)
         assert_int_equal(r.status, AG_OK);
         if (r.count[AG_LOG_WARNING] != 1 || !strstr(r.said[AG_LOG_WARNING], CASES[i].warning))
             fail_msg("%s: %s", CASES[i].text, r.said[AG_LOG_WARNING] ? r.said[AG_LOG_WARNING] : "nothing said");
-        assert_rgb(r.scene->media[0].sigma_a, CASES[i].r, CASES[i].g, CASES[i].b, 1e-6);
+        assert_rgb(r.scene->media[0].as.homogeneous.sigma_a, CASES[i].r, CASES[i].g, CASES[i].b, 1e-6);
         reading_destroy(&r);
     }
 }

@@ -139,7 +139,7 @@ static void media(void **state)
         told("MakeNamedMedium \"m\" \"string type\" \"heterogeneous\" \"float density\" [ 1 3 ]\n"
              "\"rgb sigma_a\" [ 1 2 3 ] \"rgb sigma_s\" [ 0 0 0 ] WorldBegin",
              2, (const char *const[]){"\"heterogeneous\" is pbrt-v3's", "\"uniformgrid\" are not supported", NULL});
-    assert_rgb(r.scene->media[0].sigma_a, 2, 4, 6, 1e-6);
+    assert_rgb(r.scene->media[0].as.homogeneous.sigma_a, 2, 4, 6, 1e-6);
     reading_destroy(&r);
 }
 

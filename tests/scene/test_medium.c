@@ -8,9 +8,15 @@
 #include "medium/phase_function.h"
 #include "rays/transmittance.h"
 
-static const medium FOG = {.sigma_a = {0.1f, 0.4f, 0.0f}, .sigma_s = {0.5f, 0.2f, 2.0f}, .phase = {0.0f}};
-static const medium TEA = {.sigma_a = {0.3f, 0.0f, 1.0f}};
-static const medium MIST = {.sigma_s = {0.0f, 1.0f, 0.25f}};
+static const medium FOG = {.as.homogeneous = {{0.1f, 0.4f, 0.0f}, {0.5f, 0.2f, 2.0f}}};
+static const medium TEA = {.as.homogeneous.sigma_a = {0.3f, 0.0f, 1.0f}};
+static const medium MIST = {.as.homogeneous.sigma_s = {0.0f, 1.0f, 0.25f}};
+
+/* medium_flight_pass along any line. */
+static bool pass(medium_flight *f, const medium *m, float length, float *out_distance)
+{
+    return medium_flight_pass(f, m, &(medium_stretch){{1.0f, 2.0f, 3.0f}, {0.0f, 0.0f, 1.0f}, length}, out_distance);
+}
 
 /* Stretches of a way, and what is left of light at the end. */
 typedef struct stretch {
@@ -32,7 +38,7 @@ static void expect_flights(const stretch *way, int count)
             medium_flight_begin(rgb_gray(1.0f), (vec2){((float)(i % 3) + 0.5f) / 3.0f, ((float)(i / 3) + 0.5f) / SIDE});
         float distance = 0.0f;
         int k = 0;
-        while (k < count && !medium_flight_pass(&f, way[k].m, way[k].length, &distance))
+        while (k < count && !pass(&f, way[k].m, way[k].length, &distance))
             k++;
         rgb weight = medium_flight_weight(&f);
         const double weights[3] = {weight.r, weight.g, weight.b};
@@ -48,7 +54,7 @@ static void expect_flights(const stretch *way, int count)
     for (int c = 0; c < 3; c++) {
         double left = 1.0;
         for (int k = 0; k < count; k++) {
-            const rgb a = way[k].m->sigma_a, s = way[k].m->sigma_s;
+            const rgb a = way[k].m->as.homogeneous.sigma_a, s = way[k].m->as.homogeneous.sigma_s;
             double sigma_s = c == 0 ? s.r : c == 1 ? s.g : s.b;
             double sigma_t = sigma_s + (double)(c == 0 ? a.r : c == 1 ? a.g : a.b), d = way[k].length;
             double after = sigma_t > 0.0 ? exp(-sigma_t * d) : 1.0;
@@ -84,15 +90,15 @@ static void flights_end_well(void **state)
     medium_flight f = medium_flight_begin(rgb_gray(1.0f), most);
     float distance = -1.0f;
     assert_int_equal(f.channel, 2);
-    assert_true(medium_flight_pass(&f, &FOG, INFINITY, &distance) && distance > 7.0f && isfinite(distance));
+    assert_true(pass(&f, &FOG, INFINITY, &distance) && distance > 7.0f && isfinite(distance));
     rgb weight = medium_flight_weight(&f);
     assert_true(rgb_is_finite(weight) && weight.b > 0.0f);
     f = medium_flight_begin(rgb_gray(2.0f), (vec2){0.0f, 0.0f}); /* red, at once; but red is not scattered */
-    assert_false(medium_flight_pass(&f, &MIST, INFINITY, &distance));
+    assert_false(pass(&f, &MIST, INFINITY, &distance));
     weight = medium_flight_weight(&f);
     assert_true(weight.r == 3.0f && weight.g == 0.0f && weight.b == 0.0f);
     f = medium_flight_begin(rgb_gray(1.0f), most); /* far beyond what floats hold */
-    assert_false(medium_flight_pass(&f, &FOG, 8.0f, &distance));
+    assert_false(pass(&f, &FOG, 8.0f, &distance));
     f.transmittance = f.density = rgb_gray(0.0f);
     assert_true(rgb_is_black(medium_flight_weight(&f)));
 }
@@ -104,7 +110,7 @@ static void no_colour_grows(void **state)
 {
     (void)state;
     enum { PATHS = 20000, SCATTERINGS = 12 };
-    static const medium MILK = {.sigma_s = {0.2f, 2.0f, 20.0f}};
+    static const medium MILK = {.as.homogeneous.sigma_s = {0.2f, 2.0f, 20.0f}};
     rng random = test_random(41);
     double sums[3] = {0}, squares[3] = {0};
     for (int i = 0; i < PATHS; i++) {
@@ -112,7 +118,7 @@ static void no_colour_grows(void **state)
         for (int k = 0; k < SCATTERINGS; k++) {
             float distance;
             medium_flight f = medium_flight_begin(carried, rng_vec2(&random));
-            assert_true(medium_flight_pass(&f, &MILK, INFINITY, &distance));
+            assert_true(pass(&f, &MILK, INFINITY, &distance));
             carried = rgb_mul(carried, medium_flight_weight(&f));
             assert_true(carried.r + carried.g + carried.b <= 3.0f * (1.0f + 1e-5f * (float)(k + 1)));
         }
@@ -131,12 +137,12 @@ static void no_colour_grows(void **state)
 static void empty_channels_are_not_picked(void **state)
 {
     (void)state;
-    static const medium MILK = {.sigma_s = {0.2f, 2.0f, 20.0f}};
+    static const medium MILK = {.as.homogeneous.sigma_s = {0.2f, 2.0f, 20.0f}};
     for (int i = 0; i < 1000; i++) {
         float distance;
         medium_flight f = medium_flight_begin((rgb){0.5f, 0.0f, 0.0f}, (vec2){((float)i + 0.5f) / 1000.0f, 0.5f});
         assert_int_equal(f.channel, 0);
-        assert_true(medium_flight_pass(&f, &MILK, INFINITY, &distance));
+        assert_true(pass(&f, &MILK, INFINITY, &distance));
         rgb weight = medium_flight_weight(&f);
         assert_close(weight.r, 1.0, 1e-5);
         assert_true(weight.g == 0.0f && weight.b == 0.0f);

@@ -58,15 +58,16 @@ static void expect_way(const scene *s, vec3 from, vec3 to, uint32_t start, doubl
 static void beers_law(void **state)
 {
     (void)state;
-    const medium m = {.sigma_a = {0.1f, 0.0f, 7.0f}};
+    medium m = medium_make(MEDIUM_HOMOGENEOUS);
+    m.as.homogeneous.sigma_a = (rgb){0.1f, 0.0f, 7.0f};
     for (int i = 0; i <= 40; i++) {
         float distance = 0.25f * (float)i;
-        rgb left = medium_transmittance(&m, distance);
+        rgb left = medium_transmittance(&m, &(medium_stretch){{1.0f, 2.0f, 3.0f}, {0.0f, 0.0f, 1.0f}, distance});
         assert_relative(left.r, exp(-0.1f * (double)distance), 1e-6);
         assert_true(left.g == 1.0f);
         assert_relative(left.b, exp(-7.0 * (double)distance), 1e-4);
     }
-    rgb far = medium_transmittance(&m, INFINITY);
+    rgb far = medium_transmittance(&m, &(medium_stretch){{1.0f, 2.0f, 3.0f}, {0.0f, 0.0f, 1.0f}, INFINITY});
     assert_true(far.r == 0.0f && far.g == 1.0f && far.b == 0.0f);
     rgb found, scattered;
     assert_true(medium_find_preset("Espresso", &found, &scattered) && found.g == 6.5751f && scattered.g == 0.84557f);

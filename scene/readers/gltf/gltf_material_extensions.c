@@ -85,8 +85,9 @@ static ag_status read_volume(gltf_reader *r, const gltf_value *at, const gltf_va
         return AG_OK;
     m->is_thin = false;
     bool absorbs = v.json && (color.r < 1.0f || color.g < 1.0f || color.b < 1.0f);
-    medium filling = {.sigma_a = {absorption(r, color.r, distance), absorption(r, color.g, distance),
-                                  absorption(r, color.b, distance)}};
+    medium filling = medium_make(MEDIUM_HOMOGENEOUS);
+    filling.as.homogeneous.sigma_a =
+        (rgb){absorption(r, color.r, distance), absorption(r, color.g, distance), absorption(r, color.b, distance)};
     if (!absorbs)
         return AG_OK;
     tell_absorption(r);

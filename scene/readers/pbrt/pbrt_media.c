@@ -38,14 +38,17 @@ static rgb scaled(rgb sigma, double scale)
 
 static ag_status set_absorption(pbrt_parser *parser, const parameter_list *list, rgb sigma_a, double scale, medium *m)
 {
-    m->sigma_a = scaled(sigma_a, scale);
-    return rgb_is_finite(m->sigma_a) ? AG_OK : pbrt_refuse(parser, list, "scale", "it absorbs more than a float holds");
+    m->as.homogeneous.sigma_a = scaled(sigma_a, scale);
+    return rgb_is_finite(m->as.homogeneous.sigma_a)
+               ? AG_OK
+               : pbrt_refuse(parser, list, "scale", "it absorbs more than a float holds");
 }
 
 static ag_status set_scattering(pbrt_parser *parser, const parameter_list *list, rgb sigma_s, double scale, medium *m)
 {
-    m->sigma_s = scaled(sigma_s, scale);
-    return rgb_is_finite(medium_extinction(m))
+    homogeneous_matter *matter = &m->as.homogeneous;
+    matter->sigma_s = scaled(sigma_s, scale);
+    return rgb_is_finite(rgb_add(matter->sigma_a, matter->sigma_s))
                ? AG_OK
                : pbrt_refuse(parser, list, "scale", "it scatters more than a float holds");
 }
@@ -100,7 +103,7 @@ static void tell_stand_in(pbrt_parser *parser, const parameter_list *list, const
 static void tell_grid(pbrt_parser *parser, const parameter_list *list, const char *type, bool scatters, medium *m)
 {
     if (scatters)
-        m->sigma_a = rgb_gray(0.0f);
+        m->as.homogeneous.sigma_a = rgb_gray(0.0f);
     tell_stand_in(parser, list, type,
                   scatters ? "neither absorbs nor scatters" : "absorbs alike everywhere, by its mean \"sigma_a\"");
 }
@@ -159,7 +162,7 @@ static ag_status read_unknown_density(pbrt_parser *parser, parameter_list *list,
 {
     const char *type = parameter_list_find(list, "type")->strings[0];
     tell_stand_in(parser, list, type, "neither absorbs nor scatters");
-    m->sigma_a = rgb_gray(0.0f);
+    m->as.homogeneous.sigma_a = rgb_gray(0.0f);
     return AG_OK;
 }
 
@@ -167,20 +170,23 @@ static ag_status read_medium(pbrt_parser *parser, parameter_list *list, medium *
 {
     static const struct {
         const char *type;
+        medium_kind kind; /* of those that vary from place to place: their stand-in's */
         ag_status (*read)(pbrt_parser *parser, parameter_list *list, medium *m);
-    } READERS[] = {{"homogeneous", read_homogeneous},
-                   {"uniformgrid", read_uniform_grid},
-                   {"rgbgrid", read_rgb_grid},
-                   {"cloud", read_unknown_density},
-                   {"nanovdb", read_unknown_density}};
+    } READERS[] = {{"homogeneous", MEDIUM_HOMOGENEOUS, read_homogeneous},
+                   {"uniformgrid", MEDIUM_HOMOGENEOUS, read_uniform_grid},
+                   {"rgbgrid", MEDIUM_HOMOGENEOUS, read_rgb_grid},
+                   {"cloud", MEDIUM_HOMOGENEOUS, read_unknown_density},
+                   {"nanovdb", MEDIUM_HOMOGENEOUS, read_unknown_density}};
     const char *type = NULL;
     AG_TRY(parameter_get_string(list, parser->log, "type", &type));
     if (!type)
         return pbrt_error(parser, list->where, strlen("MakeNamedMedium"),
                           "MakeNamedMedium \"%s\" has no \"string type\"", list->name);
     for (size_t i = 0; i < sizeof READERS / sizeof *READERS; i++)
-        if (strcmp(type, READERS[i].type) == 0)
+        if (strcmp(type, READERS[i].type) == 0) {
+            *out_medium = medium_make(READERS[i].kind);
             return READERS[i].read(parser, list, out_medium);
+        }
     return pbrt_refuse(parser, list, "type", "unknown medium \"%s\"", type);
 }
 
@@ -202,7 +208,7 @@ static ag_status find_or_reserve(pbrt_parser *parser, const char *name, file_loc
         parser->named_media = larger;
     }
     pbrt_named_medium added = {.where = where};
-    const medium nothing = {.phase = {0.0f}};
+    const medium nothing = medium_make(MEDIUM_HOMOGENEOUS);
     AG_TRY(scene_add_medium(parser->scene, &nothing, &added.index));
     added.name = strdup(name);
     if (!added.name || name_table_set(&parser->medium_names, name, (uint32_t)count)) {
@@ -224,8 +230,12 @@ static ag_status make_named(pbrt_parser *parser, parameter_list *list)
         return pbrt_error(parser, list->where, strlen("MakeNamedMedium"),
                           "medium \"%s\" is made twice, first at %s:%d:%d", list->name, named->where.file,
                           named->where.line, named->where.column);
-    medium made = {.phase = {0.0f}};
-    AG_TRY(read_medium(parser, list, &made));
+    medium made = medium_make(MEDIUM_HOMOGENEOUS);
+    ag_status status = read_medium(parser, list, &made);
+    if (status != AG_OK) {
+        medium_reset(&made);
+        return status;
+    }
     parser->scene->media[named->index] = made;
     named->is_defined = true;
     named->where = list->where;
