@@ -7,6 +7,8 @@
 #include "shape/curves.h"
 #include "shape/mesh_motion.h"
 
+#include <string.h>
+
 #define ADD(value) HASH128_ADD(h, value)
 
 static void add_array(hash128 *h, const void *items, size_t count, size_t item_size)
@@ -54,72 +56,27 @@ static void add_texture(hash128 *h, const texture *t)
     ADD(t->most);
 }
 
-/* The first value textures are hashed of every material; later ones only where they are used, so that maps which were
- * kept before there were these stay valid. */
-enum { FIRST_VALUE_TEXTURES = 16 };
-
-/* Sheen, and roughness that has a direction. Maps of scenes without them, that were kept before there was either, stay
- * valid. */
-static void add_principled_rest(hash128 *h, const material *m)
-{
-    bool is_without = rgb_is_black(m->sheen) && m->sheen_roughness == 0.0f && m->sheen_model == SHEEN_CHARLIE &&
-                      m->roughness_v == -1.0f && m->anisotropy == 0.0f && m->grain_turn == 0.0f &&
-                      m->grain_texture == SCENE_NO_TEXTURE;
-    for (size_t i = FIRST_VALUE_TEXTURES; i < sizeof m->value_textures / sizeof *m->value_textures; i++)
-        is_without = is_without && m->value_textures[i] == SCENE_NO_TEXTURE;
-    if (is_without)
-        return;
-    ADD(m->sheen);
-    ADD(m->sheen_roughness);
-    ADD(m->sheen_model);
-    ADD(m->roughness_v);
-    ADD(m->anisotropy);
-    ADD(m->grain_turn);
-    ADD(m->grain_texture);
-    hash128_add(h, m->value_textures + FIRST_VALUE_TEXTURES,
-                sizeof m->value_textures - FIRST_VALUE_TEXTURES * sizeof *m->value_textures);
-}
-
+/* Of what the file says, all that differs from the default, each with its name. */
 static void add_material(hash128 *h, const material *m)
 {
+    material unsaid;
     ADD(m->kind);
-    ADD(m->reflectance);
-    ADD(m->transmittance);
-    ADD(m->eta);
-    ADD(m->k);
-    ADD(m->ior);
-    ADD(m->alpha_u);
-    ADD(m->alpha_v);
-    ADD(m->base_alpha_u);
-    ADD(m->base_alpha_v);
-    ADD(m->coat_thickness);
-    ADD(m->coat_albedo);
-    ADD(m->coat_g);
-    ADD(m->coat_bounces);
-    ADD(m->hair_sigma_a);
-    ADD(m->hair_beta_m);
-    ADD(m->hair_beta_n);
-    ADD(m->hair_tilt_degrees);
     ADD(m->mixed);
-    ADD(m->mix_amount);
-    ADD(m->metallic);
-    ADD(m->roughness);
-    ADD(m->transmission);
-    ADD(m->specular);
-    ADD(m->specular_color);
-    ADD(m->clearcoat);
-    ADD(m->clearcoat_roughness);
-    ADD(m->is_thin);
-    ADD(m->dielectric_f0);
-    ADD(m->base_through);
-    ADD(m->is_textured);
-    ADD(m->remaps_roughness);
-    add_principled_rest(h, m);
-    hash128_add(h, m->value_textures, FIRST_VALUE_TEXTURES * sizeof *m->value_textures);
-    ADD(m->displacement_texture);
-    ADD(m->normal_map_texture);
-    ADD(m->normal_scale);
-    ADD(m->is_lambertian);
+#define ADD_VALUE(type, name, otherwise)                                                                               \
+    unsaid.name = (otherwise);                                                                                         \
+    if (memcmp(&m->name, &unsaid.name, sizeof m->name) != 0) {                                                         \
+        hash128_add_text(h, #name);                                                                                    \
+        ADD(m->name);                                                                                                  \
+    }
+    MATERIAL_VALUE_LIST(ADD_VALUE)
+#undef ADD_VALUE
+#define ADD_TEXTURE(name)                                                                                              \
+    if (m->name != SCENE_NO_TEXTURE) {                                                                                 \
+        hash128_add_text(h, #name);                                                                                    \
+        ADD(m->name);                                                                                                  \
+    }
+    MATERIAL_TEXTURE_LIST(ADD_TEXTURE)
+#undef ADD_TEXTURE
 }
 
 /* --- shapes --- */

@@ -35,32 +35,6 @@ typedef enum bsdf_lobes { BSDF_GATHERED = 1, BSDF_TRACED = 2, BSDF_ALL = 3 } bsd
  * medium, flux is not. */
 typedef enum bsdf_transport { BSDF_RADIANCE, BSDF_FLUX } bsdf_transport;
 
-/* All kinds of lobes, each with its bsdf_lobe_type (bsdf_lobe.h). */
-#define BSDF_LOBE_LIST(X)                                                                                              \
-    X(LOBE_DIFFUSE, bsdf_lobe_diffuse)                 /* to the side it came from */                                  \
-    X(LOBE_DIFFUSE_THROUGH, bsdf_lobe_diffuse_through) /* to the other side */                                         \
-    X(LOBE_COATED_BASE, bsdf_lobe_coated_base)         /* diffuse, under a coat */                                     \
-    X(LOBE_PRINCIPLED_BASE, bsdf_lobe_principled_base) /* diffuse, under the interface of the principled one */        \
-    X(LOBE_CONDUCTOR, bsdf_lobe_conductor)                                                                             \
-    X(LOBE_DIELECTRIC, bsdf_lobe_dielectric)           /* reflection and refraction */                                 \
-    X(LOBE_THIN_DIELECTRIC, bsdf_lobe_thin_dielectric) /* a pane: reflection, and straight through */                  \
-    X(LOBE_SLAB, bsdf_lobe_slab) /* a slab passed straight: reflection by both faces, and straight through */          \
-    X(LOBE_COAT, bsdf_lobe_coat) /* reflection by a dielectric coat */                                                 \
-    X(LOBE_CONDUCTOR_UNDER_COAT, bsdf_lobe_conductor_under_coat) /* refracted in, reflected, refracted out */          \
-    X(LOBE_COAT_SCATTERED, bsdf_lobe_coat_scattered)             /* light that leaves a coat at any angle (coat.h) */  \
-    X(LOBE_HAIR, bsdf_lobe_hair)                                 /* all light of a fibre (hair.h) */                   \
-    X(LOBE_PRINCIPLED, bsdf_lobe_principled) /* of metal and dielectric: reflection, and straight or refracted */      \
-    X(LOBE_CLEARCOAT, bsdf_lobe_clearcoat)   /* reflection by the coat of the principled one */                        \
-    X(LOBE_SHEEN, bsdf_lobe_sheen)           /* reflection by the fibres of cloth (sheen.h) */                         \
-    X(LOBE_PHASE, bsdf_lobe_phase)           /* of a point in a medium (phase_function.h) */
-
-typedef enum bsdf_lobe_kind {
-#define BSDF_LOBE_ENUM(kind, type) kind,
-    BSDF_LOBE_LIST(BSDF_LOBE_ENUM)
-#undef BSDF_LOBE_ENUM
-        LOBE_KIND_COUNT
-} bsdf_lobe_kind;
-
 typedef struct bsdf_lobe {
     uint8_t kind;  /* bsdf_lobe_kind */
     uint8_t group; /* bsdf_lobes */

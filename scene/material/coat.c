@@ -4,6 +4,7 @@
 #include "material/coat_lobe.h"
 #include "material/coat_table.h"
 #include "material/fresnel.h"
+#include "material/material.h"
 #include "texture/texture.h"
 
 /* The cosine at which light that has lost its direction meets the metal: about its mean over the hemisphere. */

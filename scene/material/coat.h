@@ -11,8 +11,9 @@
 #ifndef AFTERGLOW_COAT_H
 #define AFTERGLOW_COAT_H
 
-#include "material/material.h"
 #include "material/microfacet.h"
+
+typedef struct material material; /* material.h */
 
 /* A coat and its base at a point, textures evaluated. The members mean the same as those of `material`. */
 typedef struct coat_point {

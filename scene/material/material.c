@@ -6,12 +6,7 @@
 #include "math/rng.h"
 #include "scene.h"
 
-#include <stddef.h>
 #include <string.h>
-
-enum { VALUE_TEXTURE_COUNT = sizeof((material *)0)->value_textures / sizeof(uint32_t) };
-_Static_assert(offsetof(material, value_textures[VALUE_TEXTURE_COUNT - 1]) == offsetof(material, anisotropy_texture),
-               "value_textures counts the names beside it");
 
 void material_make_rough_on_both_axes(float *alpha_u, float *alpha_v)
 {
@@ -26,19 +21,12 @@ material material_make(material_kind kind)
     material m;
     memset(&m, 0, sizeof m);
     m.kind = kind;
-    m.reflectance = rgb_gray(0.5f);
-    m.ior = 1.5f;
-    m.specular_color = rgb_gray(1.0f);
-    m.specular = m.metallic = m.roughness = 1.0f;
-    m.roughness_v = -1.0f;
-    m.is_thin = true;
-    m.hair_beta_m = m.hair_beta_n = 0.3f;
-    m.hair_tilt_degrees = 2.0f;
-    m.mix_amount = 0.5f;
-    for (size_t i = 0; i < VALUE_TEXTURE_COUNT; i++)
-        m.value_textures[i] = SCENE_NO_TEXTURE;
-    m.displacement_texture = m.normal_map_texture = m.grain_texture = SCENE_NO_TEXTURE;
-    m.normal_scale = 1.0f;
+#define SET_VALUE(type, name, otherwise) m.name = (otherwise);
+    MATERIAL_VALUE_LIST(SET_VALUE)
+#undef SET_VALUE
+#define SET_NO_TEXTURE(name) m.name = SCENE_NO_TEXTURE;
+    MATERIAL_TEXTURE_LIST(SET_NO_TEXTURE)
+#undef SET_NO_TEXTURE
     if (material_type_of(kind)->init)
         material_type_of(kind)->init(&m);
     return m;
@@ -46,10 +34,9 @@ material material_make(material_kind kind)
 
 static bool has_textures(const material *m)
 {
-    for (size_t i = 0; i < VALUE_TEXTURE_COUNT; i++)
-        if (m->value_textures[i] != SCENE_NO_TEXTURE)
-            return true;
-    return false;
+#define OR_IS_THERE(name) || m->name != SCENE_NO_TEXTURE
+    return false MATERIAL_TEXTURE_LIST(OR_IS_THERE);
+#undef OR_IS_THERE
 }
 
 void material_prepare(material *m)

@@ -3,9 +3,8 @@
 
 #include "material/fresnel.h"
 #include "material/ggx_albedo.h"
+#include "material/material.h"
 #include "material/sheen.h"
-
-#include <stddef.h>
 
 /* glTF's coat has an index of 1.5. */
 static const float COAT_F0 = 0.04f;
@@ -122,10 +121,9 @@ static rgb bound_sheen(rgb sheen, sheen_model model)
 void principled_resolve(principled_point *p, rgb specular_color)
 {
     p->reflectance = bound_above(bound_below(p->reflectance));
-    float *const shares[] = {&p->metallic,  &p->transmission,        &p->specular,
-                             &p->clearcoat, &p->clearcoat_roughness, &p->sheen_roughness};
-    for (size_t i = 0; i < sizeof shares / sizeof *shares; i++)
-        *shares[i] = clamp_to_unit(*shares[i]);
+#define CLAMP_SHARE(name) p->name = clamp_to_unit(p->name);
+    PRINCIPLED_SHARE_LIST(CLAMP_SHARE)
+#undef CLAMP_SHARE
     p->sheen = bound_sheen(p->sheen, (sheen_model)p->sheen_model);
     p->has_sheen = !rgb_is_black(p->sheen);
     float f0 = 1.0f; /* ior 0 is glTF's word for an infinite one */
@@ -147,15 +145,12 @@ principled_point principled_point_of(const material *m)
                               .dielectric_f0 = m->dielectric_f0,
                               .ior = m->ior,
                               .facets = {m->alpha_u, m->alpha_v},
-                              .metallic = m->metallic,
-                              .transmission = m->transmission,
-                              .specular = m->specular,
-                              .clearcoat = m->clearcoat,
-                              .clearcoat_roughness = m->clearcoat_roughness,
-                              .base_through = m->base_through,
+#define SHARE_OF_MATERIAL(name) .name = m->name,
+                              PRINCIPLED_SHARE_LIST(SHARE_OF_MATERIAL)
+#undef SHARE_OF_MATERIAL
+                                  .base_through = m->base_through,
                               .sheen = m->sheen,
                               .has_sheen = !rgb_is_black(m->sheen),
-                              .sheen_roughness = m->sheen_roughness,
                               .sheen_model = (uint8_t)m->sheen_model,
                               .is_thin = m->is_thin};
 }
@@ -167,16 +162,13 @@ void principled_prepare(material *m)
     principled_resolve(&p, m->specular_color);
     m->reflectance = p.reflectance;
     m->specular_color = bound_below(m->specular_color);
-    m->metallic = p.metallic;
+#define RESOLVED_SHARE(name) m->name = p.name;
+    PRINCIPLED_SHARE_LIST(RESOLVED_SHARE)
+#undef RESOLVED_SHARE
     m->roughness = clamp_to_unit(m->roughness);
     m->roughness_v = fminf(m->roughness_v, 1.0f);
     m->anisotropy = clamp_to_unit(m->anisotropy);
     m->sheen = p.sheen;
-    m->sheen_roughness = p.sheen_roughness;
-    m->transmission = p.transmission;
-    m->specular = p.specular;
-    m->clearcoat = p.clearcoat;
-    m->clearcoat_roughness = p.clearcoat_roughness;
     m->ior = p.ior;
     m->alpha_u = p.facets.alpha_u;
     m->alpha_v = p.facets.alpha_v;

@@ -11,8 +11,18 @@
 #ifndef AFTERGLOW_PRINCIPLED_H
 #define AFTERGLOW_PRINCIPLED_H
 
-#include "material/material.h"
 #include "material/microfacet.h"
+
+typedef struct material material; /* material.h */
+
+/* Values in [0, 1] that have the same names in `material` and at a point, each multiplied with its texture. */
+#define PRINCIPLED_SHARE_LIST(X)                                                                                       \
+    X(metallic)                                                                                                        \
+    X(transmission)                                                                                                    \
+    X(specular)                                                                                                        \
+    X(clearcoat)                                                                                                       \
+    X(clearcoat_roughness)                                                                                             \
+    X(sheen_roughness)
 
 /* MATERIAL_PRINCIPLED at a point, textures evaluated. The members mean the same as those of `material`. */
 typedef struct principled_point {
@@ -20,10 +30,11 @@ typedef struct principled_point {
     rgb dielectric_f0; /* of facets at normal incidence; at grazing they reflect `specular` */
     float ior;
     ggx facets; /* of the interface */
-    float metallic, transmission, specular, clearcoat, clearcoat_roughness;
-    float base_through; /* share of diffuse light from outside that reaches the diffuse base */
-    rgb sheen;          /* factor of the sheen's reflectance, as bounded by sheen_factor_max */
-    float sheen_roughness;
+#define PRINCIPLED_SHARE(name) float name;
+    PRINCIPLED_SHARE_LIST(PRINCIPLED_SHARE)
+#undef PRINCIPLED_SHARE
+    float base_through;  /* share of diffuse light from outside that reaches the diffuse base */
+    rgb sheen;           /* factor of the sheen's reflectance, as bounded by sheen_factor_max */
     uint8_t sheen_model; /* sheen_model */
     bool has_sheen;      /* it is not black */
     bool is_thin;

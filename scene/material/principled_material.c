@@ -64,6 +64,12 @@ static const float SHEEN_SHARE_MIN = 1e-4f;
 
 static void say(const material *m, material_point *p) { p->principled = principled_point_of(m); }
 
+static void multiply(const material_lookup *at, uint32_t texture_index, float *in_out_factor)
+{
+    if (texture_index != SCENE_NO_TEXTURE && *in_out_factor != 0.0f)
+        *in_out_factor *= texture_evaluate_float(at->s, texture_index, at->hit);
+}
+
 static void look_up(const material_lookup *at, const material *m, material_point *out)
 {
     principled_point *p = &out->principled;
@@ -76,15 +82,11 @@ static void look_up(const material_lookup *at, const material *m, material_point
         specular_color = rgb_mul(specular_color, texture_evaluate_rgb(at->s, m->specular_color_texture, at->hit));
     if (m->sheen_texture != SCENE_NO_TEXTURE && !rgb_is_black(m->sheen))
         p->sheen = rgb_mul(p->sheen, texture_evaluate_rgb(at->s, m->sheen_texture, at->hit));
-    const uint32_t textures[] = {m->metallic_texture,        m->roughness_texture, m->transmission_texture,
-                                 m->specular_texture,        m->clearcoat_texture, m->clearcoat_roughness_texture,
-                                 m->sheen_roughness_texture, m->anisotropy_texture};
-    float *const factors[] = {&p->metallic,        &roughness,    &p->transmission,
-                              &p->specular,        &p->clearcoat, &p->clearcoat_roughness,
-                              &p->sheen_roughness, &anisotropy};
-    for (size_t i = 0; i < sizeof textures / sizeof *textures; i++)
-        if (textures[i] != SCENE_NO_TEXTURE && *factors[i] != 0.0f)
-            *factors[i] *= texture_evaluate_float(at->s, textures[i], at->hit);
+#define MULTIPLY_SHARE(name) multiply(at, m->name##_texture, &p->name);
+    PRINCIPLED_SHARE_LIST(MULTIPLY_SHARE)
+#undef MULTIPLY_SHARE
+    multiply(at, m->roughness_texture, &roughness);
+    multiply(at, m->anisotropy_texture, &anisotropy);
     if (m->roughness_v_texture != SCENE_NO_TEXTURE && roughness_v > 0.0f)
         roughness_v = fmaxf(0.0f, roughness_v * texture_evaluate_float(at->s, m->roughness_v_texture, at->hit));
     p->facets = principled_facets(roughness, roughness_v, anisotropy);
