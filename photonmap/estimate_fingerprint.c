@@ -15,7 +15,7 @@ enum { CAUSTIC_PHOTONS = 16 };
 static const float CAUSTIC_FLUX = 1e-4f;
 /* Estimates of few photons and of many go by other bounds. */
 static const uint32_t NEAREST[] = {20, 96};
-/* Of tracing. */
+/* Numbers of photons and paths that are traced, and of scatterings of a path. */
 enum { TRACED_PHOTONS = 768, GUIDED_PATHS = 512, CAUSTIC_PATHS = 2048, SCATTERINGS_MAX = 5 };
 enum { TRIALS = 1024, ASKED_POINTS = 256 };
 
@@ -23,7 +23,7 @@ static float between(rng *random, float least, float most) { return least + (mos
 
 /* --- photons that are traced --- */
 
-/* What guides photons to a part of the floor. */
+/* The maps and tables that guide photons to a part of the floor. */
 typedef struct guidance {
     importance_map asked, onward;
     onward_ways ways;

@@ -9,7 +9,7 @@
 /* The kinds of surfaces; of each run of sixteen discs most are PLAIN. */
 typedef enum surface_of_disc { PLAIN, CHECKERED, METAL, PANE, CURTAIN, COATED, SURFACE_COUNT } surface_of_disc;
 
-/* What the shapes refer to. */
+/* Indices of the materials, the texture and the medium that shapes refer to. */
 typedef struct parts {
     uint32_t materials[SURFACE_COUNT], glass, interface;
     uint32_t holes; /* a texture of 0 and 1 */

@@ -155,6 +155,30 @@ void photon_map_derive(photon_map *map, int irradiance_bias)
         (float)(SURELY * EMPTY_DISC_PHOTONS * photons_each(map) / ((double)AG_PI * (double)map->set.emitted_paths));
 }
 
+/* Unused lanes of the last block are left out: but for their positions nothing is set there. */
+static void add_blocks_hash(const photon_block *blocks, uint32_t photon_count, hash128 *in_out_hash)
+{
+    for (uint32_t i = 0; i < photon_count; i += PHOTON_BLOCK_LANES) {
+        const photon_block *b = &blocks[i / PHOTON_BLOCK_LANES];
+        size_t lanes = photon_count - i < PHOTON_BLOCK_LANES ? photon_count - i : PHOTON_BLOCK_LANES;
+        for (int axis = 0; axis < 3; axis++)
+            hash128_add(in_out_hash, b->position[axis], lanes * sizeof b->position[0][0]);
+        hash128_add(in_out_hash, b->flux, lanes * sizeof b->flux[0]);
+        hash128_add(in_out_hash, b->direction, lanes * sizeof b->direction[0]);
+        hash128_add(in_out_hash, b->normal, lanes * sizeof b->normal[0]);
+    }
+}
+
+void photon_map_add_hash(const photon_map *map, hash128 *in_out_hash)
+{
+    HASH128_ADD(in_out_hash, map->set.emitted_paths);
+    HASH128_ADD(in_out_hash, map->set.count);
+    add_blocks_hash(map->blocks, map->set.count, in_out_hash);
+    HASH128_ADD(in_out_hash, map->irradiance_photons.count);
+    if (!photon_map_all_have_irradiance(map))
+        add_blocks_hash(map->irradiance_photons.blocks, map->irradiance_photons.count, in_out_hash);
+}
+
 void photon_map_reset(photon_map *map)
 {
     if (!map->is_borrowed) {

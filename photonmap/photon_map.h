@@ -7,6 +7,7 @@
 
 #include "clear_spaces.h"
 #include "irradiance_photons.h"
+#include "math/hash128.h"
 #include "photon_tracing.h"
 #include "photon_tree.h"
 
@@ -53,6 +54,9 @@ typedef struct photon_map {
 ag_status photon_map_create(run_context *run, photon_set *set, const photon_map_settings *settings,
                             double progress_begin, double progress_end, photon_map *out_map);
 void photon_map_reset(photon_map *map);
+
+/* Adds to a hash which photons the map has, and which of them keep irradiances; not the irradiances themselves. */
+void photon_map_add_hash(const photon_map *map, hash128 *in_out_hash);
 
 /* Sets what follows from the rest of a map with photons and from its bias, for a map from a file: the values of
  * irradiance codes, and how far an irradiance surely reaches. */

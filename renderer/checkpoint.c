@@ -44,8 +44,12 @@ static uint64_t words_of(const struct ag_rendering *r)
 ag_status checkpoint_header_make(const struct ag_rendering *r, checkpoint_header *out)
 {
     memset(out, 0, sizeof *out);
-    if (integrator_of(r->settings.integrator)->has_photon_map)
+    if (integrator_of(r->settings.integrator)->has_photon_map) {
         AG_TRY(context_estimates(r->context, &out->estimates));
+        out->photons = hash128_begin();
+        photon_map_add_hash(&r->maps->global, &out->photons);
+        photon_map_add_hash(&r->maps->caustic, &out->photons);
+    }
     memcpy(out->magic, MAGIC, sizeof out->magic);
     out->layout = CHECKPOINT_LAYOUT;
     out->byte_order = BYTE_ORDER;
@@ -85,6 +89,8 @@ const char *checkpoint_header_difference(const checkpoint_header *file, const ch
         return "camera, or other names or groups of lights";
     if (memcmp(file->plane_sizes, ours->plane_sizes, sizeof file->plane_sizes) != 0)
         return "film";
+    if (!hash128_is_equal(file->photons, ours->photons))
+        return "build of the program, which traces other photons";
     return file->photon_count != ours->photon_count ? "photon map" : NULL;
 }
 
@@ -182,8 +188,6 @@ ag_status ag_rendering_read_checkpoint(ag_rendering *r, const char *path)
 {
     if (!r || !path)
         return AG_ERROR_ARGUMENT;
-    checkpoint_header ours;
-    AG_TRY(checkpoint_header_make(r, &ours));
     char text[128] = "";
     int descriptor = input_file_open(NULL, path, text, sizeof text);
     if (descriptor < 0)
@@ -193,7 +197,12 @@ ag_status ag_rendering_read_checkpoint(ag_rendering *r, const char *path)
         close(descriptor);
         return AG_ERROR_MEMORY;
     }
-    checkpoint_header header;
+    checkpoint_header header, ours;
+    ag_status status = checkpoint_header_make(r, &ours);
+    if (status != AG_OK) {
+        fclose(file);
+        return status;
+    }
     bool has_header = fread(&header, sizeof header, 1, file) == 1;
     const char *why = NULL, *what = "";
     if (!has_header || memcmp(header.magic, MAGIC, sizeof MAGIC) != 0)

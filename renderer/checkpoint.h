@@ -10,7 +10,7 @@
 #include "rendering.h"
 
 /* The layout's number is raised with every change of the header or of what the film's planes hold. */
-enum { CHECKPOINT_LAYOUT = 8, CHECKPOINT_SETTINGS_MAX = 512 };
+enum { CHECKPOINT_LAYOUT = 9, CHECKPOINT_SETTINGS_MAX = 512 };
 
 /* The header has no gaps: its bytes are written to the file as they are in memory. */
 typedef struct checkpoint_header {
@@ -18,7 +18,8 @@ typedef struct checkpoint_header {
     uint32_t layout, byte_order;
     char program[32], isa[16];
     hash128 scene, view, filter;
-    hash128 estimates;                     /* context_estimates, where there is a photon map; else zeros */
+    hash128 estimates, photons;            /* where there is a photon map, else zeros: context_estimates, and both
+                                              maps by photon_map_add_hash */
     uint64_t plane_sizes[FILM_PLANES_MAX]; /* bytes; 0 behind the last */
     uint64_t photon_count;                 /* irradiance words; 0: none */
     uint32_t settings_size, spare;

@@ -14,7 +14,8 @@ static const double NEGLIGIBLE = 0.002;
 /* A sky that lights a smaller share of the samples than this comes in by windows. */
 static const double FEW_WINDOWS = 0.4;
 
-/* Whether a sky comes from everywhere: its samples know nothing of windows. */
+/* Whether a sky comes from everywhere: its samples know nothing of windows. A sky that picks directions by numbers
+ * picks them alike at all places; one that does not, as behind a portal, picks them by place. */
 static bool has_open_sky(const scene *s)
 {
     for (uint32_t i = 0; i < s->infinite_light_count; i++)

@@ -162,16 +162,15 @@ static const option_row ROWS[] = {
               .manual = "Write down what there is so often, and at a signal, to _OUTFILE_.afterglow-checkpoint "
                         "beside the first outfile. It is removed when the picture is complete."},
      .take = take_checkpoint},
-    {.text =
-         {.name = "resume",
-          .section = "Work",
-          .help = "go on from that file, where it is there, to the same bits",
-          .manual =
-              "Go on from that file, where it is there. The picture has the bits of one that was never "
-              "cut, however its render ended: by a signal, SIGKILL, or a power failure. A checkpoint of "
-              "another scene, other settings, another version or a build whose photon map has other light, "
-              "and one that is damaged, is refused, and the message says which; scenes are compared by what is in them, so that files may have "
-              "moved."},
+    {.text = {.name = "resume",
+              .section = "Work",
+              .help = "go on from that file, where it is there, to the same bits",
+              .manual =
+                  "Go on from that file, where it is there. The picture has the bits of one that was never "
+                  "cut, however its render ended: by a signal, SIGKILL, or a power failure. A checkpoint of "
+                  "another scene, other settings, another version or a build whose photon map has other light, "
+                  "and one that is damaged, is refused, and the message says which; scenes are compared by what is in "
+                  "them, so that files may have moved."},
      FLAG(resume)},
     {.text =
          {.name = "time-limit",

@@ -27,7 +27,7 @@ enum { LIGHT_GROUPS_MAX = 32 };
 #define SAMPLE_VALUE_LIST(X)                                                                                           \
     X(SUM_ALPHA, float, alpha, false) /* share of the background that is hidden, [0, 1]; in media on average */
 
-/* The same of its ray's first hit, which are summed where there is one. */
+/* The values of a camera ray's first hit, which are summed where there is one; columns as in SAMPLE_VALUE_LIST. */
 #define FIRST_HIT_LIST(X)                                                                                              \
     X(SUM_ALBEDO, rgb, albedo, true)                                                                                   \
     X(SUM_NORMAL, vec3, normal, true)                      /* of shading, on the eye's side */                         \

@@ -26,7 +26,8 @@ bool sample_split_goes_on(const ag_render_settings *settings, bool splits_sample
            (settings->noise_level > 0.0f || settings->samples_per_pixel > SPLIT_FIRST_BARRIER);
 }
 
-int sample_split_expected_samples(const ag_render_settings *settings)
+/* How many samples a pixel is expected to get, at most: with a level of noise, few get as many as they may. */
+static int expected_samples(const ag_render_settings *settings)
 {
     const int samples = settings->samples_per_pixel;
     return settings->noise_level > 0.0f && samples > ADAPTIVE_SAMPLES ? ADAPTIVE_SAMPLES : samples;
@@ -38,7 +39,7 @@ split_counts sample_split_first(const ag_render_settings *settings)
     if (rays > 0)
         return (split_counts){.rays = rays,
                               .lights = (rays + GATHER_RAYS_PER_LIGHT_SAMPLE - 1) / GATHER_RAYS_PER_LIGHT_SAMPLE};
-    const int samples = sample_split_expected_samples(settings);
+    const int samples = expected_samples(settings);
     if (samples > 0 && AG_DEFAULT_GATHER_RAYS_PER_PIXEL / samples > SPLIT_FIRST_RAYS_MIN)
         rays = (uint32_t)(AG_DEFAULT_GATHER_RAYS_PER_PIXEL / samples);
     return (split_counts){.rays = rays > 0 ? rays : SPLIT_FIRST_RAYS_MIN, .lights = FIRST_LIGHTS};

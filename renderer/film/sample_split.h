@@ -43,9 +43,6 @@ bool sample_split_goes_on(const ag_render_settings *settings, bool splits_sample
 /* The counts of every sample where blocks do not choose, and of the first samples where they do. */
 split_counts sample_split_first(const ag_render_settings *settings);
 
-/* How many samples a pixel is expected to get, at most: with a level of noise, few get as many as they may. */
-int sample_split_expected_samples(const ag_render_settings *settings);
-
 /* The most rays of either kind that a sample may have. */
 split_counts sample_split_most(const ag_render_settings *settings, bool splits_samples);
 

@@ -5,7 +5,7 @@
 #include <string.h>
 #include <strings.h>
 
-enum { LARGEST_TILE_BITS = 9 }; /* TEXTURE_TILE_BITS_MAX */
+enum { LARGEST_TILE_BITS = 9 }; /* TEXTURE_TILE_BITS_MAX, as the test of this file holds */
 enum { LEAST_TILE_BITS = 3 };   /* reading smaller ones one by one costs more than their pixels are worth */
 
 /* Returns how many of the first channels are red, green, blue and alpha of one layer, by their names. */

@@ -15,7 +15,8 @@ extern "C" {
  * with alpha where that layer has it. 0: none has. names: [count]. */
 int image_layout_find_colors(const char *const *names, int count, int *out_begin);
 
-/* Returns the rows that OpenEXR packs together, by the name of the compression. */
+/* Returns the rows that OpenEXR packs together, by the name of the compression; of one that is not known the most that
+ * any packs, 256. */
 int image_layout_exr_rows(const char *compression);
 
 /* Returns the power of two that a tile's side is, or -1: it is none, or beyond what is held at once. */

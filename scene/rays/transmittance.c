@@ -8,11 +8,10 @@
 #include "medium/medium_flight.h"
 #include "rays/slab_faces.h"
 
-/* The share of light that is left over a distance from a point of a ray of unit direction, in the ray's medium. */
-static rgb transmittance_from(const scene *s, const scene_ray *ray, vec3 from, float distance)
+/* The share of light that is left over a stretch of a ray, in the ray's medium. */
+static rgb transmittance_over(const scene *s, const scene_ray *ray, const medium_stretch *way)
 {
-    const medium_stretch way = {from, ray->direction, distance};
-    return ray->medium < s->medium_count ? medium_transmittance(&s->media[ray->medium], &way) : rgb_gray(1.0f);
+    return ray->medium < s->medium_count ? medium_transmittance(&s->media[ray->medium], way) : rgb_gray(1.0f);
 }
 
 /* Lamps with a mix of materials stay where they are: their light starts all over them. */
@@ -89,7 +88,7 @@ static ray_end follow(const scene *s, scene_ray *ray, float length, bool through
         }
         travelled += distance;
         if (in_out_left)
-            *in_out_left = rgb_mul(*in_out_left, transmittance_from(s, ray, from, distance));
+            *in_out_left = rgb_mul(*in_out_left, transmittance_over(s, ray, &way));
         if (!is_hit || (in_out_left && rgb_is_black(*in_out_left)) || (flight && rgb_is_black(flight->transmittance)))
             return RAY_ENDS_NOWHERE;
         slab_meet(s, ray, out_hit);
@@ -138,7 +137,8 @@ bool transmittance_intersect(const scene *s, scene_ray *ray, uint64_t *in_out_cu
     bool is_hit = scene_intersect(s, *ray, INFINITY, out_hit);
     if (is_hit)
         slab_meet(s, ray, out_hit);
-    *out_transmittance = transmittance_from(s, ray, ray->origin, is_hit ? out_hit->distance : INFINITY);
+    const medium_stretch way = {ray->origin, ray->direction, is_hit ? out_hit->distance : INFINITY};
+    *out_transmittance = transmittance_over(s, ray, &way);
     return is_hit && !rgb_is_black(*out_transmittance);
 }
 
@@ -172,8 +172,10 @@ rgb transmittance_of_ray(const scene *s, scene_ray ray, float reach, uint64_t *i
     float unit = normalize_direction(&ray);
     if (!(unit > 0.0f))
         return left; /* from a point to itself */
-    if (!s->has_interfaces)
-        return transmittance_from(s, &ray, ray.origin, reach * unit);
+    if (!s->has_interfaces) {
+        const medium_stretch way = {ray.origin, ray.direction, reach * unit};
+        return transmittance_over(s, &ray, &way);
+    }
     return follow(s, &ray, reach * unit, false, in_out_cut, &hit, &left, NULL) ? rgb_gray(0.0f) : left;
 }
 

@@ -182,7 +182,7 @@ static bool is_noticed(tracing_change *what)
 
 static void nothing(scene *s, photon_tracing_settings *t) { (void)s, (void)t; }
 
-/* What tracing does with each of these is in the fingerprint. */
+/* The fingerprint notices when tracing treats any one of these otherwise. */
 static void depends_on_tracing(void **state)
 {
     (void)state;

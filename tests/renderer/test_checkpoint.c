@@ -158,7 +158,8 @@ static void overwrite(const unsigned char *bytes, size_t size)
     assert_int_equal(fclose(file), 0);
 }
 
-/* A header holds the fingerprint of the photon map's estimates, and the path tracer's holds none. */
+/* A header holds the fingerprint of the photon map's estimates and that of its photons, which other photons change and
+ * computed irradiances do not; the path tracer's holds neither. */
 static void test_header_has_estimates(void **state)
 {
     (void)state;
@@ -176,31 +177,45 @@ static void test_header_has_estimates(void **state)
                          AG_OK);
         assert_false(hash128_is_equal(estimates, none));
         assert_true(hash128_is_equal(header.estimates, path ? none : estimates));
+        assert_true(hash128_is_equal(header.photons, none) == path);
+        if (!path) {
+            const hash128 photons = header.photons;
+            assert_int_equal(ag_rendering_continue(r, 1), AG_OK);
+            assert_int_equal(checkpoint_header_make(r, &header), AG_OK);
+            assert_true(hash128_is_equal(header.photons, photons));
+            r->maps->global.blocks[0].direction[3] ^= 1;
+            assert_int_equal(checkpoint_header_make(r, &header), AG_OK);
+            assert_false(hash128_is_equal(header.photons, photons));
+        }
         ag_rendering_finish(r, NULL);
         studio_close(s);
     }
 }
 
-/* A build whose estimates are others makes the same file but for their fingerprint and the checksum. */
-static void test_other_estimates(void **state)
+static void flip_bit(unsigned char *bytes, size_t size, size_t at)
+{
+    bytes[at] ^= 1;
+    uint32_t crc = (uint32_t)crc32_z(0, bytes, size - sizeof crc);
+    memcpy(bytes + size - sizeof crc, &crc, sizeof crc);
+    overwrite(bytes, size);
+}
+
+/* A build whose estimates or photons are others makes the same file but for their fingerprint and the checksum. */
+static void test_other_builds(void **state)
 {
     (void)state;
+    const size_t differ[] = {offsetof(checkpoint_header, estimates), offsetof(checkpoint_header, photons)};
     studio *s = studio_open(TEXT, 1);
     s->settings.gather_samples = 1;
     s->settings.photon_count = s->settings.caustic_photon_count = 500;
     write_checkpoint_of(s);
     size_t size;
     unsigned char *bytes = read_bytes(in_folder("c"), &size);
-    uint32_t crc;
-    bytes[offsetof(checkpoint_header, estimates)] ^= 1;
-    crc = (uint32_t)crc32_z(0, bytes, size - sizeof crc);
-    memcpy(bytes + size - sizeof crc, &crc, sizeof crc);
-    overwrite(bytes, size);
-    expect_refusal(s, "with another build of the program");
-    bytes[offsetof(checkpoint_header, estimates)] ^= 1;
-    crc = (uint32_t)crc32_z(0, bytes, size - sizeof crc);
-    memcpy(bytes + size - sizeof crc, &crc, sizeof crc);
-    overwrite(bytes, size);
+    for (int i = 0; i < 2; i++) {
+        flip_bit(bytes, size, differ[i]);
+        expect_refusal(s, i == 0 ? "whose photon map has other light" : "which traces other photons");
+        flip_bit(bytes, size, differ[i]);
+    }
     ag_rendering *r = studio_begin(s);
     assert_int_equal(ag_rendering_read_checkpoint(r, in_folder("c")), AG_OK);
     ag_rendering_finish(r, NULL);
@@ -273,7 +288,7 @@ int main(void)
         TEST_IN_FOLDER(test_other_renders),
         TEST_IN_FOLDER(test_every_setting_counts),
         TEST_IN_FOLDER(test_header_has_estimates),
-        TEST_IN_FOLDER(test_other_estimates),
+        TEST_IN_FOLDER(test_other_builds),
         TEST_IN_FOLDER(test_damage),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -188,7 +188,7 @@ static void test_no_word_is_forgotten(void **state)
                 {offsetof(material, mixed) + sizeof(uint32_t[2]), 4});
     values_keep_their_names(&s->materials[s->material_count - 1], s);
     WORDS_COUNT(texture, &s->textures[0], {0, 0});
-    WORDS_COUNT(medium, &s->media[0], {0, 0});
+    WORDS_COUNT(medium, &s->media[0], FIELD(medium, kind));
     WORDS_COUNT(scene_instance, &s->instances[0], {0, 0});
     /* with more motion segments there would be more vertices or points: see test_mesh_motion.c */
     WORDS_COUNT(shape, find_shape(s, SHAPE_MESH), {as + offsetof(mesh, motion_segments), sizeof(shape)});

@@ -92,11 +92,13 @@ static inline ag_noise ag_rendering_noise(const ag_rendering *rendering)
 
 /* Writes the samples so far to a file, atomically. Another process that creates the same rendering can read it and
  * continue to the same bits. Errors: AG_ERROR_MEMORY, AG_ERROR_OUTPUT, AG_CANCELLED (while the reader of a FIFO was
- * waited for), AG_ERROR_SYSTEM (the photon map's file was truncated or overwritten: nothing is written). */
+ * waited for), AG_ERROR_SYSTEM (the photon map's file was truncated or overwritten: nothing is written),
+ * AG_ERROR_RAY_TRACING (Embree has no memory for the small scene by which builds are told apart). */
 AG_API ag_status ag_rendering_write_checkpoint(const ag_rendering *rendering, const char *path);
 /* Reads a checkpoint; to be called before the first ag_rendering_continue. A file that is damaged, or of another scene,
- * other settings or another version is refused: the log says why, and the rendering stays as it was. Errors:
- * AG_ERROR_INPUT. */
+ * other settings or another version is refused, as is one of a build that traces other photons or estimates other
+ * irradiances: the log says why, and the rendering stays as it was. Errors: AG_ERROR_INPUT (it is refused),
+ * AG_ERROR_MEMORY, AG_ERROR_RAY_TRACING. */
 AG_API ag_status ag_rendering_read_checkpoint(ag_rendering *rendering, const char *path);
 /* Writes the photons as binary PLY, atomically, for viewers and scripts. Properties: x, y, z; the normal nx, ny, nz;
  * the direction of travel dx, dy, dz; red, green, blue in W; caustic (0 global map, 1 caustic map); demanded (1 where
