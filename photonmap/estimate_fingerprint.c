@@ -15,6 +15,8 @@ enum { CAUSTIC_PHOTONS = 16 };
 static const float CAUSTIC_FLUX = 1e-4f;
 /* Estimates of few photons and of many go by other bounds. */
 static const uint32_t NEAREST[] = {20, 96};
+/* Of the photons of a steady map, which keep irradiances. */
+static const float STEADY_FRACTION = 0.25f;
 /* Numbers of photons and paths that are traced, and of scatterings of a path. */
 enum { TRACED_PHOTONS = 768, GUIDED_PATHS = 512, CAUSTIC_PATHS = 2048, SCATTERINGS_MAX = 5 };
 enum { TRIALS = 1024, ASKED_POINTS = 256 };
@@ -142,10 +144,14 @@ static ag_status add_traced(const scene *s, run_context *run, photon_tracing_fn 
 /* Distributes photons of other colours over the floor, where they are dense or bright in parts, and evenly over the
  * smaller discs. */
 static ag_status make_map(run_context *run, const scene *surfaces, const fingerprint_disc discs[FINGERPRINT_DISCS],
-                          uint32_t nearest, photon_map *out_map)
+                          uint32_t nearest, bool is_steady, photon_map *out_map)
 {
     photon_set set = {.photons = photon_records_create(PHOTONS), .emitted_paths = PHOTONS};
-    photon_map_settings settings = {.nearest = nearest, .surface_area = 2.0f * AG_PI, .surfaces = surfaces};
+    photon_map_settings settings = {.nearest = nearest,
+                                    .surface_area = 2.0f * AG_PI,
+                                    .irradiance_fraction = is_steady ? STEADY_FRACTION : 1.0f,
+                                    .is_steady = is_steady,
+                                    .surfaces = surfaces};
     if (!set.photons)
         return AG_ERROR_MEMORY;
     rng random = rng_make(1, 2, 3);
@@ -166,12 +172,14 @@ static ag_status make_map(run_context *run, const scene *surfaces, const fingerp
     return photon_map_create(run, &set, &settings, 0.0, 0.0, out_map);
 }
 
-/* Adds estimates and slots' words at photons; and estimates beside them, where no photon is the nearest by nothing. */
+/* Adds estimates and slots' words at irradiance photons; and estimates beside them, where no photon is the nearest by
+ * nothing. */
 static void add_estimates(const photon_map *map, irradiance_estimate_fn *find, photon_neighbor *scratch, hash128 *hash)
 {
-    for (uint32_t i = 0; i < PHOTONS; i += ESTIMATE_EVERY) {
-        vec3 at = photon_block_position(map->blocks, i);
-        vec3 normal = direction_decode(photon_block_normal(map->blocks, i));
+    const photon_block *blocks = map->irradiance_photons.blocks;
+    for (uint32_t i = 0; i < map->irradiance_photons.count; i += ESTIMATE_EVERY) {
+        vec3 at = photon_block_position(blocks, i);
+        vec3 normal = direction_decode(photon_block_normal(blocks, i));
         at.x += i % (2 * ESTIMATE_EVERY) == 0 ? 0.0f : 0.0078125f;
         uint64_t rays = 0;
         rgb irradiance;
@@ -196,10 +204,11 @@ static ag_status add_caustic_radius(const photon_map *global, hash128 *in_out_ha
 }
 
 static ag_status add_map(run_context *run, const scene *surfaces, const fingerprint_disc discs[FINGERPRINT_DISCS],
-                         uint32_t nearest, irradiance_estimate_fn *find, hash128 *in_out_hash)
+                         uint32_t nearest, bool is_steady, irradiance_estimate_fn *find, hash128 *in_out_hash)
 {
     photon_map map;
-    AG_TRY(make_map(run, surfaces, discs, nearest, &map));
+    AG_TRY(make_map(run, surfaces, discs, nearest, is_steady, &map));
+    photon_map_add_hash(&map, in_out_hash);
     photon_neighbor *scratch = malloc(photon_map_scratch_count(&map) * sizeof *scratch);
     ag_status status = scratch ? add_caustic_radius(&map, in_out_hash) : AG_ERROR_MEMORY;
     if (status == AG_OK) {
@@ -224,7 +233,9 @@ ag_status estimate_fingerprint(const run_context *run, const char *isa, photon_t
     if (status == AG_OK) {
         status = add_traced(surfaces, &quiet, trace, &hash);
         for (size_t i = 0; i < sizeof NEAREST / sizeof *NEAREST && status == AG_OK; i++)
-            status = add_map(&quiet, surfaces, discs, NEAREST[i], find, &hash);
+            status = add_map(&quiet, surfaces, discs, NEAREST[i], false, find, &hash);
+        if (status == AG_OK)
+            status = add_map(&quiet, surfaces, discs, NEAREST[0], true, find, &hash);
         scene_destroy(surfaces);
     }
     run_context_reset(&quiet);

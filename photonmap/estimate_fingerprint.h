@@ -19,9 +19,10 @@ typedef ag_status photon_tracing_fn(const scene *s, run_context *run, const phot
 
 /* Writes the fingerprint of `trace` and `find`, usually photon_tracing_run and irradiance_estimate_find, on the
  * built-in scene (fingerprint_scene.h): of photons of both maps, by power alone and guided; of estimates from 4096
- * other photons in the open, at walls, corners, ledges and rims, of 20 and of 96 photons, with and without surfaces; of
- * the slots' words; and of the largest radius of caustic estimates (caustic_radius.h). isa: as scene_commit takes it.
- * It takes about 30 ms of one core. Errors: AG_ERROR_MEMORY, AG_ERROR_RAY_TRACING. */
+ * other photons in the open, at walls, corners, ledges and rims, of 20 and of 96 photons, with and without surfaces,
+ * and in a steady map of which a quarter keep irradiances; of the slots' words; and of the largest radius of caustic
+ * estimates (caustic_radius.h). isa: as scene_commit takes it. It takes about 30 ms of one core. Errors:
+ * AG_ERROR_MEMORY, AG_ERROR_RAY_TRACING. */
 ag_status estimate_fingerprint(const run_context *run, const char *isa, photon_tracing_fn *trace,
                                irradiance_estimate_fn *find, hash128 *out_hash);
 
