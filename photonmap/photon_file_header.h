@@ -5,8 +5,8 @@
 
 #include "photon_file.h"
 
-/* Raise this whenever the layout or the tracing of photons changes. A change of the estimates shows in their
- * fingerprint. */
+/* Raise this whenever the layout changes, or the tracing of photons where estimate_fingerprint does not see it: by
+ * meshes, curves, pictures, and the pilot that aims them. A change of the estimates shows in that fingerprint. */
 enum { PHOTON_FILE_LAYOUT = 22 };
 enum {
     PHOTON_FILE_PAGE = 4096,

@@ -6,6 +6,7 @@
 #include "integrator/integrator.h"
 #include "output/atomic_file.h"
 #include "rays/bvh.h"
+#include "render_maps.h"
 #include "scene_hash.h"
 #include "settings_table.h"
 #include "status.h"
@@ -46,9 +47,7 @@ ag_status checkpoint_header_make(const struct ag_rendering *r, checkpoint_header
     memset(out, 0, sizeof *out);
     if (integrator_of(r->settings.integrator)->has_photon_map) {
         AG_TRY(context_estimates(r->context, &out->estimates));
-        out->photons = hash128_begin();
-        photon_map_add_hash(&r->maps->global, &out->photons);
-        photon_map_add_hash(&r->maps->caustic, &out->photons);
+        out->photons = maps_photons_hash(r->maps);
     }
     memcpy(out->magic, MAGIC, sizeof out->magic);
     out->layout = CHECKPOINT_LAYOUT;
@@ -90,13 +89,22 @@ const char *checkpoint_header_difference(const checkpoint_header *file, const ch
     if (memcmp(file->plane_sizes, ours->plane_sizes, sizeof file->plane_sizes) != 0)
         return "film";
     if (!hash128_is_equal(file->photons, ours->photons))
-        return "build of the program, which traces other photons";
-    return file->photon_count != ours->photon_count ? "photon map" : NULL;
+        return "photon map, of other photons: by another build of the program, or of another file";
+    return file->photon_count != ours->photon_count ? "number of irradiances" : NULL;
 }
 
 /* --- writing --- */
 
 static uint32_t add_to_crc(uint32_t crc, const void *bytes, size_t size) { return (uint32_t)crc32_z(crc, bytes, size); }
+
+static bool has_lost_map(const ag_rendering *r, const char *what)
+{
+    if (!r->maps || photon_file_is_intact(&r->maps->file))
+        return false;
+    log_message(r->context->log, AG_LOG_ERROR, "'%s': the photon map was cut short or overwritten: %s",
+                r->map_name ? r->map_name : "", what);
+    return true;
+}
 
 ag_status ag_rendering_write_checkpoint(const ag_rendering *r, const char *path)
 {
@@ -112,13 +120,10 @@ ag_status ag_rendering_write_checkpoint(const ag_rendering *r, const char *path)
         if (!words)
             return AG_ERROR_MEMORY;
         irradiance_cache_save(&r->maps->cache, words);
-        if (!photon_file_is_intact(&r->maps->file)) {
-            log_message(r->context->log, AG_LOG_ERROR,
-                        "'%s': the photon map was cut short or overwritten: no checkpoint is written",
-                        r->map_name ? r->map_name : "");
-            free(words);
-            return AG_ERROR_SYSTEM;
-        }
+    }
+    if (has_lost_map(r, "no checkpoint is written")) {
+        free(words);
+        return AG_ERROR_SYSTEM;
     }
     int plane_count = film_planes(r->film, planes), count = 0;
     pieces[count++] = (atomic_file_piece){&header, sizeof header};
@@ -199,6 +204,8 @@ ag_status ag_rendering_read_checkpoint(ag_rendering *r, const char *path)
     }
     checkpoint_header header, ours;
     ag_status status = checkpoint_header_make(r, &ours);
+    if (status == AG_OK && has_lost_map(r, "no checkpoint is read"))
+        status = AG_ERROR_SYSTEM;
     if (status != AG_OK) {
         fclose(file);
         return status;

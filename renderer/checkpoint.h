@@ -18,8 +18,8 @@ typedef struct checkpoint_header {
     uint32_t layout, byte_order;
     char program[32], isa[16];
     hash128 scene, view, filter;
-    hash128 estimates, photons;            /* where there is a photon map, else zeros: context_estimates, and both
-                                              maps by photon_map_add_hash */
+    hash128 estimates, photons;            /* where there is a photon map, else zeros: context_estimates,
+                                              maps_photons_hash */
     uint64_t plane_sizes[FILM_PLANES_MAX]; /* bytes; 0 behind the last */
     uint64_t photon_count;                 /* irradiance words; 0: none */
     uint32_t settings_size, spare;

@@ -198,6 +198,17 @@ void maps_watch(const maps *m)
         run_begin_watch(&m->context->run, is_whole, &m->file);
 }
 
+hash128 maps_photons_hash(maps *m)
+{
+    if (!m->has_photons_hash) {
+        m->photons = hash128_begin();
+        photon_map_add_hash(&m->global, &m->photons);
+        photon_map_add_hash(&m->caustic, &m->photons);
+        m->has_photons_hash = true;
+    }
+    return m->photons;
+}
+
 ag_status maps_create(ag_context *context, const scene *s, const ag_render_settings *settings, maps **out_maps)
 {
     maps *m = *out_maps = calloc(1, sizeof *m);

@@ -10,6 +10,8 @@
  * to be released, on failure too. Borrows scene and context. Errors: AG_ERROR_MEMORY, AG_CANCELLED, those of
  * map_file_obtain. */
 ag_status maps_create(ag_context *context, const scene *s, const ag_render_settings *settings, maps **out_maps);
+/* Returns a hash of which photons both maps have; computed when it is first asked for. */
+hash128 maps_photons_hash(maps *m);
 maps *maps_hold(maps *m);
 void maps_release(maps *m); /* NULL is fine */
 

@@ -20,6 +20,8 @@ typedef struct maps {
     unsigned holders;            /* renderings: the maps go with the last of them */
     irradiance_counters counted; /* what the statistics have of the cache already */
     uint64_t counted_distinct;
+    hash128 photons; /* of maps_photons_hash, where has_photons_hash */
+    bool has_photons_hash;
 } maps;
 
 struct ag_rendering {

@@ -60,6 +60,8 @@ static void add_texture(hash128 *h, const texture *t)
 static void add_material(hash128 *h, const material *m)
 {
     material unsaid;
+    const int form = MATERIAL_HASH_FORM;
+    ADD(form);
     ADD(m->kind);
     ADD(m->mixed);
 #define ADD_VALUE(type, name, otherwise)                                                                               \

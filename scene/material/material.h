@@ -1,4 +1,4 @@
-/* material.h: materials as scene files describe them. material_point.h holds a material's values at a hit, from
+/* material.h: materials as scene files describe them. material_kinds.h has what is kept of one at a hit, from
  * which bsdf.h evaluates scattering. The parameters and their defaults are pbrt-v4's (pbrt.org/fileformat-v4,
  * "Materials"), those of MATERIAL_PRINCIPLED glTF's (Khronos, "glTF 2.0 Specification", appendix B;
  * KHR_materials_transmission, _ior, _specular, _clearcoat, _sheen, _anisotropy).

@@ -65,11 +65,15 @@ typedef enum bsdf_lobe_kind {
 
 /* --- what a file says of a material: type, name, default --- */
 
-/* Members of `material`, all that it has beside its kind, the two that it mixes, and what material_prepare computes.
- * From this list follow the members, their defaults (those of pbrt-v4; a kind's `init` has others) and the fingerprint
- * of a scene, which adds the name and value of what differs from the default: a new row leaves the photon maps valid
- * that were kept of scenes without it. A reader checks ranges. A material is flat and no union, since its main members
- * serve several kinds each: the reflectance five, ior six, the roughness five. */
+/* Raised when a default of the list below changes, which the fingerprint of a scene would not show. */
+enum { MATERIAL_HASH_FORM = 1 };
+
+/* Members of `material`: with MATERIAL_TEXTURE_LIST all that it has beside its kind, the two that it mixes, and what
+ * scene_add_material works out. From this list follow the members, their defaults (those of pbrt-v4, and of glTF for
+ * principled ones; a kind's `init` has others) and the fingerprint of a scene, which adds the name and value of what
+ * differs from the default: a new row leaves the photon maps valid that builds of the same version have kept of scenes
+ * without it. A reader checks ranges. Who uses a list includes texture.h too. A material is flat and no union, since
+ * its main members serve several kinds each: the reflectance five, ior six, the roughness five. */
 #define MATERIAL_VALUE_LIST(X)                                                                                         \
     X(rgb, reflectance, rgb_gray(0.5f))   /* of the diffuse base, [0, 1] */                                            \
     X(rgb, transmittance, rgb_gray(0.0f)) /* diffuse transmission: to the other side, [0, 1] */                        \

@@ -173,13 +173,14 @@ static void the_picture_of_a_checkpoint_stays(void **state)
     assert_int_equal(unlink(w.map) | unlink(in_folder("one.checkpoint")), 0);
 }
 
-/* Since a checkpoint holds irradiances, none is written from a map that was lost. */
+/* Since a checkpoint holds irradiances and a hash of the photons, none is written from a map that was lost. */
 static void no_checkpoint_of_a_lost_map(void **state)
 {
     (void)state;
-    for (loss kind = LOSS_CUT; kind <= LOSS_OVERWRITTEN; kind++) {
-        work w = begin_work(kind);
+    for (int k = 0; k < 2 * (LOSS_OVERWRITTEN + 1); k++) {
+        work w = begin_work((loss)(k / 2));
         open_scene(&w);
+        w.settings.cache = k % 2 == 0 ? AG_CACHE_ON_DEMAND : AG_CACHE_OFF;
         ag_rendering *rendering = begin_rendering(&w);
         assert_int_equal(ag_rendering_continue(rendering, 1), AG_OK);
         lose(&w);

@@ -98,7 +98,7 @@ AG_API ag_status ag_rendering_write_checkpoint(const ag_rendering *rendering, co
 /* Reads a checkpoint; to be called before the first ag_rendering_continue. A file that is damaged, or of another scene,
  * other settings or another version is refused, as is one of a build that traces other photons or estimates other
  * irradiances: the log says why, and the rendering stays as it was. Errors: AG_ERROR_INPUT (it is refused),
- * AG_ERROR_MEMORY, AG_ERROR_RAY_TRACING. */
+ * AG_ERROR_MEMORY, AG_ERROR_RAY_TRACING, AG_ERROR_SYSTEM (the photon map's file was truncated or overwritten). */
 AG_API ag_status ag_rendering_read_checkpoint(ag_rendering *rendering, const char *path);
 /* Writes the photons as binary PLY, atomically, for viewers and scripts. Properties: x, y, z; the normal nx, ny, nz;
  * the direction of travel dx, dy, dz; red, green, blue in W; caustic (0 global map, 1 caustic map); demanded (1 where
