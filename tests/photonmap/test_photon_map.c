@@ -419,6 +419,56 @@ static void a_ball_is_no_wall(void **state)
     }
 }
 
+static hash128 hash_of(const photon_map *map)
+{
+    hash128 hash = hash128_begin();
+    photon_map_add_hash(map, &hash);
+    return hash;
+}
+
+/* The last photon of a map of 1003, and the last irradiance photon, in every column; not slots, nor unused lanes. */
+static void the_hash_has_all_of_a_photon_but_its_irradiance(void **state)
+{
+    (void)state;
+    enum { COUNT = 1003 };
+    static const size_t COLUMNS[] = {offsetof(photon_block, position[0]), offsetof(photon_block, position[1]),
+                                     offsetof(photon_block, position[2]), offsetof(photon_block, flux),
+                                     offsetof(photon_block, direction),   offsetof(photon_block, normal),
+                                     offsetof(photon_block, slot)};
+    static const size_t SIZES[] = {4, 4, 4, 4, 2, 2, 4};
+    test_run r;
+    test_run_init(&r, 1);
+    photon_set set = field_photons(FIELD_SPHERE, COUNT, 3);
+    photon_map_settings settings = {.nearest = 20, .surface_area = 4.0f * AG_PI, .irradiance_fraction = 0.3f};
+    photon_map map;
+    assert_int_equal(photon_map_create(&r.run, &set, &settings, 0.0, 1.0, &map), AG_OK);
+    assert_false(photon_map_all_have_irradiance(&map));
+    const hash128 whole = hash_of(&map);
+    const struct {
+        photon_block *blocks;
+        uint32_t count;
+    } lists[] = {{map.blocks, map.set.count}, {map.irradiance_photons.blocks, map.irradiance_photons.count}};
+    for (size_t list = 0; list < 2; list++)
+        for (size_t column = 0; column < sizeof COLUMNS / sizeof *COLUMNS; column++)
+            for (uint32_t past = 0; past < 2; past++) {
+                const uint32_t index = lists[list].count - 1 + past, lane = index % PHOTON_BLOCK_LANES;
+                if (past && lane == 0)
+                    continue; /* the last block is full */
+                unsigned char *byte = (unsigned char *)&lists[list].blocks[index / PHOTON_BLOCK_LANES] +
+                                      COLUMNS[column] + lane * SIZES[column];
+                const bool is_counted = !past && COLUMNS[column] != offsetof(photon_block, slot);
+                *byte ^= 1;
+                assert_int_equal(hash128_is_equal(hash_of(&map), whole), !is_counted);
+                *byte ^= 1;
+            }
+    map.set.emitted_paths++;
+    assert_false(hash128_is_equal(hash_of(&map), whole));
+    photon_map_reset(&map);
+    const photon_map none = {0};
+    assert_false(hash128_is_equal(hash_of(&none), whole));
+    test_run_reset(&r);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -436,6 +486,7 @@ int main(void)
         cmocka_unit_test(in_the_dark_the_nearest_photon_is_farther),
         cmocka_unit_test(a_ball_is_no_wall),
         cmocka_unit_test(irradiance_survives_without_bias),
+        cmocka_unit_test(the_hash_has_all_of_a_photon_but_its_irradiance),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -163,6 +163,16 @@ static void values_keep_their_names(material *m, const scene *s)
             assert_false(hash128_is_equal(seen[other], seen[i]));
     }
     *m = kept;
+    uint32_t *const textures[] = {&m->eta_texture, &m->k_texture, &m->displacement_texture};
+    for (int i = 0; i < 3; i++) {
+        *m = kept;
+        m->eta_texture = m->k_texture = m->displacement_texture = SCENE_NO_TEXTURE;
+        *textures[i] = 0;
+        seen[i] = scene_hash_of_light(s);
+        for (int other = 0; other < i; other++)
+            assert_false(hash128_is_equal(seen[other], seen[i]));
+    }
+    *m = kept;
 }
 
 static shape *find_shape(scene *s, shape_kind kind)
