@@ -103,7 +103,7 @@ ag_status direct_guide_create(const scene *s, const vec3 *positions, const vec3 
     cell_maker m = {positions, out_order, malloc(some * sizeof *m.sorted), &g};
     bool is_whole = g.nodes && g.cells && m.sorted;
     uint32_t begin = 0;
-    for (uint32_t way = 0; is_whole && way < DIRECT_GUIDE_WAYS; way++) {
+    for (uint32_t way = 0; is_whole && way < DIRECT_GUIDE_TREES; way++) {
         uint32_t end = begin;
         for (uint32_t i = 0; i < count; i++)
             if (way_of(normals[i]) == way)

@@ -42,11 +42,11 @@ typedef struct direct_guide_cell {
     uint32_t begin, count;
 } direct_guide_cell;
 
-enum { DIRECT_GUIDE_WAYS = 7 };
+enum { DIRECT_GUIDE_TREES = 7 };
 
 typedef struct direct_guide {
-    uint32_t roots[DIRECT_GUIDE_WAYS]; /* nodes; DIRECT_GUIDE_NO_CELL: there is no such point */
-    direct_guide_node *nodes;          /* owned, as are all arrays that follow */
+    uint32_t roots[DIRECT_GUIDE_TREES]; /* nodes; DIRECT_GUIDE_NO_CELL: there is no such point */
+    direct_guide_node *nodes;           /* owned, as are all arrays that follow */
     uint32_t node_count;
     direct_guide_cell *cells;
     uint32_t cell_count;

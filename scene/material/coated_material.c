@@ -12,7 +12,7 @@ static void destroy_table(void *content) { coat_table_destroy(content); }
 
 static const material_table_type TABLE = {coat_needs_table, create_table, table_serves, destroy_table};
 
-static void say(const material *m, material_point *p) { p->coat = coat_point_of(m); }
+static void init_point(const material *m, material_point *p) { p->coat = coat_point_of(m); }
 
 static void look_up(const material_lookup *at, const material *m, material_point *p)
 {
@@ -67,7 +67,7 @@ static void add_diffuse_lobes(bsdf *b, const surface_hit *hit)
 const material_type coated_diffuse_material = {.table = &TABLE,
                                                .is_traced = diffuse_is_traced,
                                                .has_base = has_base,
-                                               .say = say,
+                                               .init_point = init_point,
                                                .look_up = look_up,
                                                .has_grain = has_grain,
                                                .add_lobes = add_diffuse_lobes,
@@ -87,7 +87,7 @@ static void add_conductor_lobes(bsdf *b, const surface_hit *hit)
 
 const material_type coated_conductor_material = {.table = &TABLE,
                                                  .is_traced = material_always,
-                                                 .say = say,
+                                                 .init_point = init_point,
                                                  .look_up = look_up,
                                                  .has_grain = has_grain,
                                                  .add_lobes = add_conductor_lobes,

@@ -1,7 +1,7 @@
 /* conductor_material.c: a metal's surface as a kind of material. Threads: pure functions. */
 #include "material/material_type.h"
 
-static void say(const material *m, material_point *p)
+static void init_point(const material *m, material_point *p)
 {
     p->metal = (metal_point){{m->alpha_u, m->alpha_v}, m->eta, m->k};
 }
@@ -21,7 +21,7 @@ static void add_lobes(bsdf *b, const surface_hit *hit)
 }
 
 const material_type conductor_material = {.is_traced = material_always,
-                                          .say = say,
+                                          .init_point = init_point,
                                           .look_up = look_up,
                                           .has_grain = has_grain,
                                           .add_lobes = add_lobes,

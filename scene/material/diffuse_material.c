@@ -2,7 +2,7 @@
  * Threads: pure functions. */
 #include "material/material_type.h"
 
-static void say(const material *m, material_point *p)
+static void init_point(const material *m, material_point *p)
 {
     p->diffuse = (diffuse_point){m->reflectance, m->transmittance};
 }
@@ -29,7 +29,7 @@ static void add_lobes(bsdf *b, const surface_hit *hit)
 const material_type diffuse_material = {.prepare = prepare,
                                         .has_base = material_always,
                                         .is_filtered = material_always,
-                                        .say = say,
+                                        .init_point = init_point,
                                         .look_up = look_up,
                                         .add_lobes = add_lobes,
                                         .base = LOBE_DIFFUSE};
@@ -81,7 +81,7 @@ static void add_both_lobes(bsdf *b, const surface_hit *hit)
 const material_type diffuse_transmission_material = {.init = init_both,
                                                      .has_base = both_have_base,
                                                      .is_filtered = both_are_filtered,
-                                                     .say = say,
+                                                     .init_point = init_point,
                                                      .look_up = look_up_both,
                                                      .add_lobes = add_both_lobes,
                                                      .base = LOBE_DIFFUSE};

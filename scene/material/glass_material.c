@@ -2,7 +2,10 @@
 #include "material/fresnel.h"
 #include "material/material_type.h"
 
-static void say(const material *m, material_point *p) { p->glass = (glass_point){{m->alpha_u, m->alpha_v}, m->ior}; }
+static void init_point(const material *m, material_point *p)
+{
+    p->glass = (glass_point){{m->alpha_u, m->alpha_v}, m->ior};
+}
 
 static void look_up(const material_lookup *at, const material *m, material_point *p)
 {
@@ -54,7 +57,7 @@ const material_type dielectric_material = {.is_traced = material_always,
                                            .is_clear_glass = is_clear,
                                            .may_be_pane = may_be_pane,
                                            .may_be_slab = material_always,
-                                           .say = say,
+                                           .init_point = init_point,
                                            .look_up = look_up,
                                            .has_grain = has_grain,
                                            .is_pane = is_pane,
@@ -86,7 +89,7 @@ static void add_thin_lobes(bsdf *b, const surface_hit *hit)
 const material_type thin_dielectric_material = {.is_traced = material_always,
                                                 .is_clear_glass = material_always,
                                                 .may_be_pane = material_always,
-                                                .say = say,
+                                                .init_point = init_point,
                                                 .look_up = look_up,
                                                 .has_grain = has_grain,
                                                 .is_pane = is_thin_pane,

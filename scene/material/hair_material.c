@@ -31,7 +31,7 @@ static const material_table_type FIBRE = {.create = create_fibre, .serves = fibr
 
 /* --- at a point --- */
 
-static void say(const material *m, material_point *p)
+static void init_point(const material *m, material_point *p)
 {
     p->hair.fibre = m->table;
     p->hair.sigma_a = m->hair_sigma_a;
@@ -63,7 +63,7 @@ static void add_lobes(bsdf *b, const surface_hit *hit)
 
 const material_type hair_material = {.table = &FIBRE,
                                      .is_traced = material_always,
-                                     .say = say,
+                                     .init_point = init_point,
                                      .look_up = look_up,
                                      .has_grain = has_grain,
                                      .add_lobes = add_lobes,

@@ -9,8 +9,8 @@
 void material_point_of(const material *m, material_point *out_point)
 {
     out_point->kind = m->kind;
-    if (material_type_of(m->kind)->say)
-        material_type_of(m->kind)->say(m, out_point);
+    if (material_type_of(m->kind)->init_point)
+        material_type_of(m->kind)->init_point(m, out_point);
 }
 
 /* m is no mix; of one that a texture picks from, is_picked: beside the point the other may be, whose pixels are of any

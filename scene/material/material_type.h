@@ -45,7 +45,7 @@ typedef struct material_type {
     /* --- at a point --- */
 
     /* Sets the values without textures; NULL: there are none. */
-    void (*say)(const material *m, material_point *p);
+    void (*init_point)(const material *m, material_point *p);
     /* Replaces them by textures' values; NULL: there are none. */
     void (*look_up)(const material_lookup *at, const material *m, material_point *p);
     /* material_point_has_grain; NULL: never. */

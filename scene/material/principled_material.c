@@ -62,7 +62,7 @@ static bool is_filtered(const scene *s, const material *m)
 /* The table rounds to 0 what the finest fibres reflect at a right angle. */
 static const float SHEEN_SHARE_MIN = 1e-4f;
 
-static void say(const material *m, material_point *p) { p->principled = principled_point_of(m); }
+static void init_point(const material *m, material_point *p) { p->principled = principled_point_of(m); }
 
 static void multiply(const material_lookup *at, uint32_t texture_index, float *in_out_factor)
 {
@@ -146,7 +146,7 @@ const material_type principled_material = {.init = init,
                                            .may_be_pane = may_be_pane,
                                            .may_be_slab = may_be_slab,
                                            .is_filtered = is_filtered,
-                                           .say = say,
+                                           .init_point = init_point,
                                            .look_up = look_up,
                                            .has_grain = has_grain,
                                            .is_pane = is_pane,
