@@ -170,23 +170,20 @@ static ag_status read_medium(pbrt_parser *parser, parameter_list *list, medium *
 {
     static const struct {
         const char *type;
-        medium_kind kind; /* of those that vary from place to place: their stand-in's */
         ag_status (*read)(pbrt_parser *parser, parameter_list *list, medium *m);
-    } READERS[] = {{"homogeneous", MEDIUM_HOMOGENEOUS, read_homogeneous},
-                   {"uniformgrid", MEDIUM_HOMOGENEOUS, read_uniform_grid},
-                   {"rgbgrid", MEDIUM_HOMOGENEOUS, read_rgb_grid},
-                   {"cloud", MEDIUM_HOMOGENEOUS, read_unknown_density},
-                   {"nanovdb", MEDIUM_HOMOGENEOUS, read_unknown_density}};
+    } READERS[] = {{"homogeneous", read_homogeneous},
+                   {"uniformgrid", read_uniform_grid},
+                   {"rgbgrid", read_rgb_grid},
+                   {"cloud", read_unknown_density},
+                   {"nanovdb", read_unknown_density}};
     const char *type = NULL;
     AG_TRY(parameter_get_string(list, parser->log, "type", &type));
     if (!type)
         return pbrt_error(parser, list->where, strlen("MakeNamedMedium"),
                           "MakeNamedMedium \"%s\" has no \"string type\"", list->name);
     for (size_t i = 0; i < sizeof READERS / sizeof *READERS; i++)
-        if (strcmp(type, READERS[i].type) == 0) {
-            *out_medium = medium_make(READERS[i].kind);
+        if (strcmp(type, READERS[i].type) == 0)
             return READERS[i].read(parser, list, out_medium);
-        }
     return pbrt_refuse(parser, list, "type", "unknown medium \"%s\"", type);
 }
 
