@@ -301,11 +301,8 @@ ag_status ag_rendering_create_view(ag_rendering *beside, const float from[3], co
     return status;
 }
 
-static ag_status render_wanted(ag_rendering *r, const integrator *kind, uint32_t wanted)
+static ag_status render_wanted(ag_rendering *r, uint32_t wanted)
 {
-    if (kind->begin_pass) {
-        AG_TRY(kind->begin_pass(r));
-    }
     AG_TRY(split_pilot_run(r));
     return r->film->wanted ? render_adaptively(r, wanted) : render_passes(r, wanted);
 }
@@ -313,13 +310,9 @@ static ag_status render_wanted(ag_rendering *r, const integrator *kind, uint32_t
 /* Renders one pass, up to `wanted` samples a pixel. The film is resolved even where that fails. */
 static ag_status render_pass(ag_rendering *r, uint32_t wanted)
 {
-    const integrator *kind = integrator_of(r->settings.integrator);
-    ag_status status = render_wanted(r, kind, wanted);
+    ag_status status = render_wanted(r, wanted);
     film_resolve(r->film);
     AG_TRY(status);
-    if (kind->end_pass) {
-        AG_TRY(kind->end_pass(r));
-    }
     return debug_views_render(&r->t, &r->context->run, r->workers, r->film);
 }
 

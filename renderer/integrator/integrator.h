@@ -23,12 +23,6 @@ typedef struct integrator {
      * of memory. eye_workers_destroy frees it. */
     bool (*reserve)(const transport *t, eye_worker *worker);
 
-    /* Called before and after a pass, which is one ag_rendering_continue. After a whole pass each pixel has as many
-     * samples as settings and film say, so what is learned from them for the next pass is the same for any number of
-     * threads. end_pass is not called where the pass was cancelled or failed. Errors: AG_ERROR_MEMORY, AG_CANCELLED. */
-    ag_status (*begin_pass)(struct ag_rendering *r);
-    ag_status (*end_pass)(struct ag_rendering *r);
-
     /* Adds the radiance along a camera ray to a sample that has nothing in it but its bounds and room for layers; what
      * complete brings comes later. */
     void (*sample)(const transport *t, eye_worker *worker, const camera_sample *from, eye_sample *in_out);
