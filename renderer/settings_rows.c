@@ -15,19 +15,19 @@ _Static_assert(offsetof(ag_render_settings, height) == offsetof(ag_render_settin
                "width and height are one setting");
 
 static const char *const INTEGRATOR_WORDS[] = {
-#define INTEGRATOR_WORD(kind, word, integrator_of_kind, about) [kind] = (word),
-    INTEGRATOR_LIST(INTEGRATOR_WORD)
+#define INTEGRATOR_WORD(kind, word, about) [kind] = #word,
+    AG_INTEGRATOR_LIST(INTEGRATOR_WORD)
 #undef INTEGRATOR_WORD
         NULL};
-#define INTEGRATOR_HELP(kind, word, integrator_of_kind, about)   "; " word ": " about
-#define INTEGRATOR_MANUAL(kind, word, integrator_of_kind, about) "; *" word "*: " about
+#define INTEGRATOR_HELP(kind, word, about)   "; " #word ": " about
+#define INTEGRATOR_MANUAL(kind, word, about) "; *" #word "*: " about
 
 static const setting_row ROWS[] = {
     {.text = {.name = "integrator",
               .argument = "NAME",
               .section = "Light",
-              .help = "how light is found (default photonmap)" INTEGRATOR_LIST(INTEGRATOR_HELP),
-              .manual = "How light is found (default *photonmap*)" INTEGRATOR_LIST(INTEGRATOR_MANUAL) "."},
+              .help = "how light is found (default photonmap)" AG_INTEGRATOR_LIST(INTEGRATOR_HELP),
+              .manual = "How light is found (default *photonmap*)" AG_INTEGRATOR_LIST(INTEGRATOR_MANUAL) "."},
      FIELD(integrator),
      .kind = SETTING_WORD,
      .words = INTEGRATOR_WORDS,

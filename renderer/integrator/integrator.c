@@ -4,8 +4,8 @@
 const integrator *integrator_of(ag_integrator kind)
 {
     static const integrator *const INTEGRATORS[] = {
-#define INTEGRATOR_ROW(kind, word, integrator_of_kind, about) [kind] = &(integrator_of_kind),
-        INTEGRATOR_LIST(INTEGRATOR_ROW)
+#define INTEGRATOR_ROW(kind, word, about) [kind] = &(word##_integrator),
+        AG_INTEGRATOR_LIST(INTEGRATOR_ROW)
 #undef INTEGRATOR_ROW
     };
     return (unsigned)kind < sizeof INTEGRATORS / sizeof *INTEGRATORS ? INTEGRATORS[kind] : NULL;

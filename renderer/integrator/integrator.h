@@ -1,5 +1,5 @@
 /* integrator.h: what an integrator is: how radiance along camera rays is found, and what has to be made for it first.
- * One file and one row of INTEGRATOR_LIST each. Flow: render, render_tiles -> [here] -> shading or path_tracing.
+ * One file and one row of AG_INTEGRATOR_LIST each. Flow: render, render_tiles -> [here] -> shading or path_tracing.
  * Threads: sample and complete run on all workers at once; the others on the thread that renders. */
 #ifndef AFTERGLOW_INTEGRATOR_H
 #define AFTERGLOW_INTEGRATOR_H
@@ -30,14 +30,9 @@ typedef struct integrator {
     void (*complete)(const transport *t, eye_worker *worker);
 } integrator;
 
-/* Every kind, in the order of the kinds: its word as a setting; its integrator, which is in a file of its own; and what
- * it is, for help and man page. */
-#define INTEGRATOR_LIST(X)                                                                                             \
-    X(AG_INTEGRATOR_PHOTONMAP, "photonmap", photon_map_integrator, "a photon map, seen by final gathering")            \
-    X(AG_INTEGRATOR_PATH, "path", path_integrator, "plain path tracing of the same scene")
-
-#define INTEGRATOR_DECLARATION(kind, word, integrator_of_kind, about) extern const integrator integrator_of_kind;
-INTEGRATOR_LIST(INTEGRATOR_DECLARATION)
+/* Each row of AG_INTEGRATOR_LIST (render_settings.h) has an integrator WORD_integrator, in a file of its own. */
+#define INTEGRATOR_DECLARATION(kind, word, about) extern const integrator word##_integrator;
+AG_INTEGRATOR_LIST(INTEGRATOR_DECLARATION)
 #undef INTEGRATOR_DECLARATION
 
 /* Returns the integrator of that kind; NULL for any other number, which render_settings_check refuses. */

@@ -40,10 +40,10 @@ static bool reserve(const transport *t, eye_worker *worker)
     return fits;
 }
 
-const integrator photon_map_integrator = {.has_photon_map = true,
-                                          .splits_samples = true,
-                                          .direct_guiding = AG_DEFAULT_DIRECT_GUIDING,
-                                          .prepare = prepare,
-                                          .reserve = reserve,
-                                          .sample = shading_radiance,
-                                          .complete = final_gather_resolve};
+const integrator photonmap_integrator = {.has_photon_map = true,
+                                         .splits_samples = true,
+                                         .direct_guiding = AG_DEFAULT_DIRECT_GUIDING,
+                                         .prepare = prepare,
+                                         .reserve = reserve,
+                                         .sample = shading_radiance,
+                                         .complete = final_gather_resolve};

@@ -10,7 +10,16 @@
 extern "C" {
 #endif
 
-typedef enum ag_integrator { AG_INTEGRATOR_PHOTONMAP, AG_INTEGRATOR_PATH } ag_integrator;
+/* Every integrator with its word as a setting, and what it is, for help and man page. */
+#define AG_INTEGRATOR_LIST(X)                                                                                          \
+    X(AG_INTEGRATOR_PHOTONMAP, photonmap, "a photon map, seen by final gathering")                                     \
+    X(AG_INTEGRATOR_PATH, path, "plain path tracing of the same scene")
+
+typedef enum ag_integrator {
+#define AG_INTEGRATOR_ENUM(value, word, about) value,
+    AG_INTEGRATOR_LIST(AG_INTEGRATOR_ENUM)
+#undef AG_INTEGRATOR_ENUM
+} ag_integrator;
 
 /* Returns whether an integrator traces photons, so that settings, layers and statistics of photons apply to it; false
  * for a value that is no integrator. */
