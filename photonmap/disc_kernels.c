@@ -39,7 +39,7 @@ static void collect_leaf(photon_query *q, uint32_t leaf, photon_found *f)
         if (photon_query_has_similar_normal(q, b->normal[lane]))
             similar |= 1u << lane;
         else if (!q->other_is_behind)
-            f->other = d[lane] < f->other ? d[lane] : f->other;
+            f->other_squared = d[lane] < f->other_squared ? d[lane] : f->other_squared;
     }
     if (!similar)
         return;
@@ -56,33 +56,6 @@ static uint32_t collect(photon_query *q, const uint32_t *leaves, uint32_t leaf_c
     while (i < leaf_count && f->leaf_count < f->leaf_capacity && f->count + PHOTON_BLOCK_LANES <= f->capacity)
         collect_leaf(q, leaves[i++], f);
     return i;
-}
-
-void photon_neighbors_quickselect(photon_neighbor *n, uint32_t count, uint32_t wanted)
-{
-    int64_t low = 0, high = (int64_t)count - 1, target = (int64_t)wanted - 1;
-    while (low < high) {
-        photon_neighbor a = n[low], b = n[low + (high - low) / 2], c = n[high];
-        photon_neighbor pivot = a < b ? (b < c ? b : (a < c ? c : a)) : (a < c ? a : (b < c ? c : b));
-        int64_t i = low, j = high;
-        while (i <= j) {
-            while (n[i] < pivot)
-                i++;
-            while (n[j] > pivot)
-                j--;
-            if (i <= j) {
-                photon_neighbor hold = n[i];
-                n[i++] = n[j];
-                n[j--] = hold;
-            }
-        }
-        if (target <= j)
-            high = j;
-        else if (target >= i)
-            low = i;
-        else
-            return;
-    }
 }
 
 static void count_within(const photon_found *f, const float most[DISC_COUNTS], uint32_t out_counts[DISC_COUNTS])

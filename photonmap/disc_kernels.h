@@ -71,8 +71,8 @@ typedef struct disc_kernels {
     /* Writes the photons farther than `low` and no farther than `high`, squared distances. Returns their number. */
     uint32_t (*list_between)(const photon_found *found, float low, float high, photon_neighbor *out_neighbors);
 
-    /* Sums the photons found that lie on the point's surface, as heights and normals tell. out_doubtful: the slots of
-     * the others. Returns the number summed. */
+    /* Sums the photons found that lie on the point's surface, as heights and normals tell. out_doubtful: the entries
+     * of the others in found->distances_squared. Returns the number summed. */
     uint32_t (*sum_on_level)(const photon_disc *disc, const photon_found *found, photon_disc_sums *out_sums,
                              photon_neighbor *out_doubtful);
 
@@ -109,15 +109,6 @@ static inline void photon_disc_add(const photon_disc *disc, uint32_t index, phot
     sums->offset[2] += (int32_t)(offset.z * scale);
 }
 
-/* Partitions neighbours so that the `wanted` nearest come first, the farthest of these last; 1 <= wanted <= count. */
-void photon_neighbors_quickselect(photon_neighbor *neighbors, uint32_t count, uint32_t wanted);
-
-/* Removes all but the `wanted` nearest photons; 1 <= wanted <= found->count. */
-void disc_kernels_keep_nearest(const disc_kernels *kernels, photon_found *found, uint32_t wanted);
-
-/* Removes the leaves that contain no photon found. */
-void photon_found_drop_empty_leaves(photon_found *found);
-
 extern const disc_kernels disc_kernels_plain;
 
 /* Return NULL where the compiler or the processor does not support these instructions. */
@@ -126,12 +117,5 @@ const disc_kernels *disc_kernels_avx512(void); /* F, BW, DQ and VL, POPCNT and B
 
 /* Returns the fastest kernels that this processor supports. */
 const disc_kernels *disc_kernels_best(void);
-
-/* photon_found_search and photon_tree_k_nearest with given kernels. */
-void disc_kernels_search(const disc_kernels *kernels, photon_found *found, const photon_tree *tree, vec3 position,
-                         vec3 normal, float min_cos, float radius, uint32_t wanted, photon_search_hint *in_out_hint);
-uint32_t disc_kernels_k_nearest(const disc_kernels *kernels, const photon_tree *tree, vec3 position, vec3 normal,
-                                float min_cos, float radius, uint32_t wanted, photon_neighbor *neighbors,
-                                float *out_other_squared);
 
 #endif

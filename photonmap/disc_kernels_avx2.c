@@ -188,7 +188,7 @@ AVX2 static uint32_t collect(photon_query *q, const uint32_t *leaves, uint32_t l
         uint32_t similar = within & find_near_codes(b, &near);
         if (similar != within) {
             const __m256 d[2] = {first, second};
-            similar = within & find_similar(q, b, d, limit, &f->other);
+            similar = within & find_similar(q, b, d, limit, &f->other_squared);
             if (!similar)
                 continue;
             in_first = lanes_of(similar);
@@ -361,14 +361,14 @@ typedef struct photons_8 {
     vec3_8 offset; /* from the disc's centre */
 } photons_8;
 
-AVX2 static inline bool find_photons(const photon_disc *disc, const photon_found *f, uint32_t slot, photons_8 *out)
+AVX2 static inline bool find_photons(const photon_disc *disc, const photon_found *f, uint32_t entry, photons_8 *out)
 {
-    __m256 is_found = _mm256_cmp_ps(_mm256_load_ps(f->distances_squared + slot), _mm256_set1_ps(f->limit), _CMP_LE_OQ);
+    __m256 is_found = _mm256_cmp_ps(_mm256_load_ps(f->distances_squared + entry), _mm256_set1_ps(f->limit), _CMP_LE_OQ);
     out->found = (uint32_t)_mm256_movemask_ps(is_found);
     if (!out->found)
         return false;
-    const photon_block *b = &disc->blocks[f->leaves[slot / PHOTON_BLOCK_LANES]];
-    uint32_t lane = slot % PHOTON_BLOCK_LANES;
+    const photon_block *b = &disc->blocks[f->leaves[entry / PHOTON_BLOCK_LANES]];
+    uint32_t lane = entry % PHOTON_BLOCK_LANES;
     vec3_8 at = {_mm256_load_ps(&b->position[0][lane]), _mm256_load_ps(&b->position[1][lane]),
                  _mm256_load_ps(&b->position[2][lane])};
     out->block = b;
@@ -403,12 +403,12 @@ AVX2 __attribute__((always_inline)) static inline uint32_t sum_on_level_as(const
                                                                            photon_neighbor *out_doubtful)
 {
     const __m256 scale = offset_scale(disc);
-    const uint32_t slots = f->leaf_count * PHOTON_BLOCK_LANES;
+    const uint32_t entries = f->leaf_count * PHOTON_BLOCK_LANES;
     near_sums sums = near_sums_none();
     uint32_t kept = 0, doubtful = 0;
     *out_sums = (photon_disc_sums){{0}, {0}};
-    for (uint32_t i = 0; i < slots; near_sums_flush(&sums, has_offsets, out_sums)) {
-        const uint32_t end = slots - i < FLUSH_EVERY * WIDTH ? slots : i + FLUSH_EVERY * WIDTH;
+    for (uint32_t i = 0; i < entries; near_sums_flush(&sums, has_offsets, out_sums)) {
+        const uint32_t end = entries - i < FLUSH_EVERY * WIDTH ? entries : i + FLUSH_EVERY * WIDTH;
         for (; i < end; i += WIDTH) {
             photons_8 p;
             if (!find_photons(disc, f, i, &p))
@@ -453,12 +453,12 @@ AVX2 static uint32_t sum_in_region(const photon_disc *disc, const surface_region
     const __m256i octants = _mm256_slli_epi32(load(SURFACE_REGION_OCTANT), 1);
     const __m256 line[2] = {_mm256_i32gather_ps(lines, octants, 4), _mm256_i32gather_ps(lines + 1, octants, 4)};
     const __m256 scale = offset_scale(disc);
-    const uint32_t slots = f->leaf_count * PHOTON_BLOCK_LANES;
+    const uint32_t entries = f->leaf_count * PHOTON_BLOCK_LANES;
     near_sums sums = near_sums_none();
     uint32_t inside = 0;
     *out_sums = (photon_disc_sums){{0}, {0}};
-    for (uint32_t i = 0; i < slots; near_sums_flush(&sums, true, out_sums)) {
-        const uint32_t end = slots - i < FLUSH_EVERY * WIDTH ? slots : i + FLUSH_EVERY * WIDTH;
+    for (uint32_t i = 0; i < entries; near_sums_flush(&sums, true, out_sums)) {
+        const uint32_t end = entries - i < FLUSH_EVERY * WIDTH ? entries : i + FLUSH_EVERY * WIDTH;
         for (; i < end; i += WIDTH) {
             photons_8 p;
             if (!find_photons(disc, f, i, &p))

@@ -161,7 +161,7 @@ AVX512 static uint32_t collect(photon_query *q, const uint32_t *leaves, uint32_t
     const photon_block *blocks = q->tree->blocks;
     const uint32_t leaf_capacity = f->leaf_capacity, most = f->capacity - PHOTON_BLOCK_LANES;
     uint32_t i = 0, found = f->leaf_count, count = f->count, *to_leaves = f->leaves;
-    float *to = f->distances_squared, other = f->other;
+    float *to = f->distances_squared, other = f->other_squared;
     for (; i < leaf_count && found < leaf_capacity && count <= most; i++) {
         const photon_block *b = &blocks[leaves[i]];
         vec3_16 off = sub(positions_of(b), at);
@@ -174,7 +174,7 @@ AVX512 static uint32_t collect(photon_query *q, const uint32_t *leaves, uint32_t
         found += similar != 0;
         count += (uint32_t)__builtin_popcount(similar);
     }
-    f->other = other;
+    f->other_squared = other;
     f->leaf_count = found;
     f->count = count;
     return i;
@@ -333,8 +333,8 @@ AVX512 __attribute__((always_inline)) static inline uint32_t sum_on_level_as(con
     for (uint32_t i = 0; i < leaves; near_sums_flush(&sums, has_offsets, out_sums)) {
         const uint32_t end = leaves - i < FLUSH_EVERY ? leaves : i + FLUSH_EVERY;
         for (; i < end; i++) {
-            const uint32_t slot = i * PHOTON_BLOCK_LANES;
-            __mmask16 found = _mm512_cmp_ps_mask(_mm512_load_ps(f->distances_squared + slot), limit, _CMP_LE_OQ);
+            const uint32_t entry = i * PHOTON_BLOCK_LANES;
+            __mmask16 found = _mm512_cmp_ps_mask(_mm512_load_ps(f->distances_squared + entry), limit, _CMP_LE_OQ);
             if (!found)
                 continue;
             const photon_block *b = &disc->blocks[f->leaves[i]];
@@ -343,7 +343,7 @@ AVX512 __attribute__((always_inline)) static inline uint32_t sum_on_level_as(con
             sums_add(&sums, disc, has_offsets, scale, b, offset, (__mmask16)on_level, out_sums);
             kept += (uint32_t)__builtin_popcount(on_level);
             for (uint32_t rest = found & ~on_level; rest; rest &= rest - 1)
-                out_doubtful[doubtful++] = slot + (uint32_t)__builtin_ctz(rest);
+                out_doubtful[doubtful++] = entry + (uint32_t)__builtin_ctz(rest);
         }
     }
     return kept;

@@ -62,14 +62,14 @@ static bool rings_lack_flux(const photon_found *found, float inner, float share)
 {
     enum { FRACTION_BITS = 8 };
     int exponent_max = FLUX_EXPONENT_MIN;
-    const uint32_t slots = found->leaf_count * PHOTON_BLOCK_LANES;
-    for (uint32_t i = 0; i < slots; i++)
+    const uint32_t entries = found->leaf_count * PHOTON_BLOCK_LANES;
+    for (uint32_t i = 0; i < entries; i++)
         if (found->distances_squared[i] <= found->limit) {
             int exponent = flux_exponent(photon_block_flux(found->blocks, photon_found_index(found, i)));
             exponent_max = exponent > exponent_max ? exponent : exponent_max;
         }
     uint64_t all = 0, inside = 0, squares = 0;
-    for (uint32_t i = 0; i < slots; i++) {
+    for (uint32_t i = 0; i < entries; i++) {
         if (!(found->distances_squared[i] <= found->limit))
             continue;
         uint32_t code = photon_block_flux(found->blocks, photon_found_index(found, i));
@@ -173,11 +173,11 @@ static void sum_own_level(const photon_map *map, const photon_disc *disc, photon
     const uint32_t count = found->count;
     const uint32_t on_level = disc_kernels_best()->sum_on_level(disc, found, out_sums, scratch);
     for (uint32_t i = 0; i < count - on_level; i++) {
-        uint32_t slot = photon_neighbor_index(scratch[i]), index = photon_found_index(found, slot);
+        uint32_t entry = photon_neighbor_index(scratch[i]), index = photon_found_index(found, entry);
         if (is_of_this_level(map, disc, index, in_out_rays))
             photon_disc_add(disc, index, out_sums);
         else
-            photon_found_forget_slot(found, slot);
+            photon_found_forget_entry(found, entry);
     }
 }
 
@@ -185,7 +185,7 @@ static void sum_own_level(const photon_map *map, const photon_disc *disc, photon
 static bool may_end(const photon_map *map, const clear_space *space, const photon_disc *disc, const photon_found *found,
                     float radius_squared, const photon_disc_sums *sums, uint64_t *in_out_rays)
 {
-    if (found->other <= radius_squared || is_lopsided(sums, disc->normal, found->count))
+    if (found->other_squared <= radius_squared || is_lopsided(sums, disc->normal, found->count))
         return true;
     return !surface_region_reaches_rim(map->surfaces, space, disc->position, disc->normal, PHOTON_ESTIMATE_MIN_COS,
                                        disc->radius, in_out_rays);

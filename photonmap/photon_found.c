@@ -27,37 +27,41 @@ void photon_found_init(photon_found *found, const photon_tree *tree, uint32_t wa
                             .distances_squared = distances,
                             .leaf_capacity = leaves,
                             .capacity = compared,
-                            .other = INFINITY,
+                            .other_squared = INFINITY,
                             .scratch = scratch};
 }
 
-uint32_t photon_tree_k_nearest(const photon_tree *tree, vec3 position, vec3 normal, float min_cos, float radius,
-                               uint32_t wanted, photon_neighbor *neighbors, float *out_other_squared)
+/* Partitions neighbours so that the `wanted` nearest come first, the farthest of these last; 1 <= wanted <= count. */
+static void quickselect(photon_neighbor *n, uint32_t count, uint32_t wanted)
 {
-    return disc_kernels_k_nearest(disc_kernels_best(), tree, position, normal, min_cos, radius, wanted, neighbors,
-                                  out_other_squared);
-}
-
-uint32_t disc_kernels_k_nearest(const disc_kernels *kernels, const photon_tree *tree, vec3 position, vec3 normal,
-                                float min_cos, float radius, uint32_t wanted, photon_neighbor *neighbors,
-                                float *out_other_squared)
-{
-    photon_found found;
-    photon_found_init(&found, tree, wanted, neighbors);
-    disc_kernels_search(kernels, &found, tree, position, normal, min_cos, radius, wanted, NULL);
-    *out_other_squared = found.other;
-    uint32_t count = kernels->list_between(&found, -1.0f, found.limit, neighbors), last = count - 1;
-    for (uint32_t i = 0; count == wanted && i < last; i++)
-        if (neighbors[i] == found.farthest) {
-            neighbors[i] = neighbors[last];
-            neighbors[last] = found.farthest;
+    int64_t low = 0, high = (int64_t)count - 1, target = (int64_t)wanted - 1;
+    while (low < high) {
+        photon_neighbor a = n[low], b = n[low + (high - low) / 2], c = n[high];
+        photon_neighbor pivot = a < b ? (b < c ? b : (a < c ? c : a)) : (a < c ? a : (b < c ? c : b));
+        int64_t i = low, j = high;
+        while (i <= j) {
+            while (n[i] < pivot)
+                i++;
+            while (n[j] > pivot)
+                j--;
+            if (i <= j) {
+                photon_neighbor hold = n[i];
+                n[i++] = n[j];
+                n[j--] = hold;
+            }
         }
-    return count;
+        if (target <= j)
+            high = j;
+        else if (target >= i)
+            low = i;
+        else
+            return;
+    }
 }
 
 /* Squared distances on a surface are spread evenly, so that counting tells where the last one wanted must be, and few
  * are left to be compared. */
-void disc_kernels_keep_nearest(const disc_kernels *kernels, photon_found *found, uint32_t wanted)
+void photon_found_keep_nearest(const disc_kernels *kernels, photon_found *found, uint32_t wanted)
 {
     enum { COMPARED = 24, ROUNDS = 3, ASIDE = 6 }; /* photons */
     float low = -1.0f, high = found->limit;
@@ -82,7 +86,7 @@ void disc_kernels_keep_nearest(const disc_kernels *kernels, photon_found *found,
     }
     photon_neighbor *compared = found->scratch;
     uint32_t count = kernels->list_between(found, low, high, compared), of_these = wanted - low_count;
-    photon_neighbors_quickselect(compared, count, of_these);
+    quickselect(compared, count, of_these);
     found->farthest = compared[of_these - 1];
     found->limit = photon_neighbor_distance_squared(found->farthest);
     for (uint32_t i = of_these; i < count; i++)
@@ -105,10 +109,4 @@ void photon_found_drop_empty_leaves(photon_found *found)
         }
     }
     found->leaf_count = left;
-}
-
-void photon_found_search(photon_found *found, const photon_tree *tree, vec3 position, vec3 normal, float min_cos,
-                         float radius, uint32_t wanted, photon_search_hint *in_out_hint)
-{
-    disc_kernels_search(disc_kernels_best(), found, tree, position, normal, min_cos, radius, wanted, in_out_hint);
 }

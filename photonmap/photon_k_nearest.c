@@ -47,12 +47,12 @@ static void collect(const disc_kernels *kernels, photon_query *q, uint32_t first
         } while (is_left && count + DISC_SUBTREE_LEAVES_MAX <= LEAVES);
         uint32_t done = kernels->collect(q, leaves, count, f);
         for (; done < count; done += kernels->collect(q, leaves + done, count - done, f)) {
-            disc_kernels_keep_nearest(kernels, f, wanted); /* each leaf has a photon: they are more than wanted */
+            photon_found_keep_nearest(kernels, f, wanted); /* each leaf has a photon: they are more than wanted */
             photon_found_drop_empty_leaves(f);
         }
     }
     if (f->count >= wanted)
-        disc_kernels_keep_nearest(kernels, f, wanted);
+        photon_found_keep_nearest(kernels, f, wanted);
 }
 
 /* A first radius squared, within which the wanted photons may be expected: the few leaves around the query tell how
@@ -99,11 +99,11 @@ static float guess_radius_squared(const photon_query *q, uint32_t first_block, u
 /* A disc whose centre is so near, in radii squared, mostly has nearly the same radius. */
 static const float HINT_NEAR = 0.25f, HINT_MARGIN = 1.1f;
 
-void disc_kernels_search(const disc_kernels *kernels, photon_found *found, const photon_tree *tree, vec3 position,
-                         vec3 normal, float min_cos, float radius, uint32_t wanted, photon_search_hint *in_out_hint)
+void photon_found_search_by(const disc_kernels *kernels, photon_found *found, const photon_tree *tree, vec3 position,
+                            vec3 normal, float min_cos, float radius, uint32_t wanted, photon_search_hint *in_out_hint)
 {
     found->leaf_count = found->count = 0;
-    found->other = INFINITY;
+    found->other_squared = INFINITY;
     if (tree->count == 0)
         return;
     photon_query q;
@@ -117,7 +117,7 @@ void disc_kernels_search(const disc_kernels *kernels, photon_found *found, const
     for (;;) {
         found->leaf_count = found->count = 0;
         found->limit = limit;
-        found->other = INFINITY;
+        found->other_squared = INFINITY;
         collect(kernels, &q, leaf, wanted, found);
         if (found->count == wanted || limit >= largest)
             break;
@@ -125,8 +125,38 @@ void disc_kernels_search(const disc_kernels *kernels, photon_found *found, const
         float margin = found->count > wanted / 2 ? 1.15f : 1.3f;
         limit = fminf(limit * fminf(4.0f, margin * (float)wanted / (float)(found->count + 1)), largest);
     }
-    if (found->other > found->limit)
-        found->other = INFINITY; /* what is known beyond the limit depends on where the search began */
+    if (found->other_squared > found->limit)
+        found->other_squared = INFINITY; /* what is known beyond the limit depends on where the search began */
     if (in_out_hint)
         *in_out_hint = (photon_search_hint){position, found->limit, PHOTON_NONE};
+}
+
+void photon_found_search(photon_found *found, const photon_tree *tree, vec3 position, vec3 normal, float min_cos,
+                         float radius, uint32_t wanted, photon_search_hint *in_out_hint)
+{
+    photon_found_search_by(disc_kernels_best(), found, tree, position, normal, min_cos, radius, wanted, in_out_hint);
+}
+
+uint32_t photon_tree_k_nearest_by(const disc_kernels *kernels, const photon_tree *tree, vec3 position, vec3 normal,
+                                  float min_cos, float radius, uint32_t wanted, photon_neighbor *neighbors,
+                                  float *out_other_squared)
+{
+    photon_found found;
+    photon_found_init(&found, tree, wanted, neighbors);
+    photon_found_search_by(kernels, &found, tree, position, normal, min_cos, radius, wanted, NULL);
+    *out_other_squared = found.other_squared;
+    uint32_t count = kernels->list_between(&found, -1.0f, found.limit, neighbors), last = count - 1;
+    for (uint32_t i = 0; count == wanted && i < last; i++)
+        if (neighbors[i] == found.farthest) {
+            neighbors[i] = neighbors[last];
+            neighbors[last] = found.farthest;
+        }
+    return count;
+}
+
+uint32_t photon_tree_k_nearest(const photon_tree *tree, vec3 position, vec3 normal, float min_cos, float radius,
+                               uint32_t wanted, photon_neighbor *neighbors, float *out_other_squared)
+{
+    return photon_tree_k_nearest_by(disc_kernels_best(), tree, position, normal, min_cos, radius, wanted, neighbors,
+                                    out_other_squared);
 }

@@ -214,7 +214,7 @@ static void the_same_photons_are_collected(void **state)
         assert_int_equal(read[1], READ);
         assert_int_equal(found[0].count, found[1].count);
         assert_int_equal(found[0].leaf_count, found[1].leaf_count);
-        assert_true(found[0].other == found[1].other);
+        assert_true(found[0].other_squared == found[1].other_squared);
         assert_memory_equal(found[0].leaves, found[1].leaves, found[0].leaf_count * sizeof *found->leaves);
         for (uint32_t k = 0; k < found[0].leaf_count * PHOTON_BLOCK_LANES; k++) {
             float d[2] = {found[0].distances_squared[k], found[1].distances_squared[k]};
@@ -268,7 +268,7 @@ static void the_nearest_are_kept(void **state)
             memcpy(found.distances_squared, distances, sizeof distances);
             found.limit = limit;
             found.count = count;
-            disc_kernels_keep_nearest(kernels[k], &found, wanted);
+            photon_found_keep_nearest(kernels[k], &found, wanted);
             assert_int_equal(found.count, wanted);
             assert_true(found.farthest == expected[wanted - 1]);
             assert_true(found.limit == photon_neighbor_distance_squared(found.farthest));
@@ -361,7 +361,7 @@ static void nothing_behind_the_last_leaf_is_found(void **state)
                 within += vec3_distance_squared(photon_block_position(tree.blocks, i), at) <= radius * radius;
             for (int k = 0; k < 2; k++) {
                 float other;
-                uint32_t found = disc_kernels_k_nearest(kernels[k], &tree, at, up, 0.5f, radius, WANTED, n, &other);
+                uint32_t found = photon_tree_k_nearest_by(kernels[k], &tree, at, up, 0.5f, radius, WANTED, n, &other);
                 assert_int_equal(found, within < WANTED ? within : WANTED);
                 for (uint32_t i = 0; i < found; i++)
                     assert_true(photon_neighbor_index(n[i]) < count);
@@ -406,9 +406,10 @@ static void hints_change_no_answer(void **state)
         photon_found_search(&found[0], &tree, at, up, 0.5f, 1.0f, WANTED, NULL);
         photon_found_search(&found[1], &tree, at, up, 0.5f, 1.0f, WANTED, &hint);
         assert_int_equal(found[0].count, found[1].count);
-        if (found[0].limit != found[1].limit || found[0].other != found[1].other)
+        if (found[0].limit != found[1].limit || found[0].other_squared != found[1].other_squared)
             fail_msg("search %u: a limit of %.9g, %.9g with a hint; another photon at %.9g, %.9g", i,
-                     (double)found[0].limit, (double)found[1].limit, (double)found[0].other, (double)found[1].other);
+                     (double)found[0].limit, (double)found[1].limit, (double)found[0].other_squared,
+                     (double)found[1].other_squared);
     }
     for (int k = 0; k < 2; k++)
         free(scratch[k]);

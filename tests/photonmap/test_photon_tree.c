@@ -77,7 +77,7 @@ static void check_k_nearest(const disc_kernels *kernels, const photon_tree *tree
                             photon_neighbor *found)
 {
     float other, nearest_other = other_by_brute_force(tree, at, normal, min_cos);
-    uint32_t count = disc_kernels_k_nearest(kernels, tree, at, normal, min_cos, radius, wanted, found, &other);
+    uint32_t count = photon_tree_k_nearest_by(kernels, tree, at, normal, min_cos, radius, wanted, found, &other);
     assert_int_equal(count, all < wanted ? all : wanted);
     photon_neighbor last = found[count > 0 ? count - 1 : 0];
     float searched = count < wanted ? radius * radius : photon_neighbor_distance_squared(last);
