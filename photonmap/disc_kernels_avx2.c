@@ -4,9 +4,7 @@
 
 #if defined(__x86_64__)
 
-#include <immintrin.h>
-
-#define AVX2 __attribute__((target("avx2,popcnt")))
+#include "avx2.h"
 
 enum { WIDTH = 8 };
 
@@ -475,7 +473,7 @@ const disc_kernels *disc_kernels_avx2(void)
 {
     static const disc_kernels KERNELS = {PHOTON_SUBTREE_LEVELS, find_leaves,  collect,      count_within,
                                          list_between,          sum_on_level, sum_in_region};
-    return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("popcnt") ? &KERNELS : NULL;
+    return avx2_is_there() ? &KERNELS : NULL;
 }
 
 #else

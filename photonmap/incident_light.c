@@ -330,8 +330,7 @@ static void warp_plain(const incident_guide *guide, uint32_t count, float u[2][I
 }
 
 #if defined(__x86_64__)
-#include <immintrin.h>
-#define AVX2 __attribute__((target("avx2")))
+#include "avx2.h"
 
 /* find_step for eight: begins and end of each. */
 typedef struct step_8 {
@@ -383,7 +382,7 @@ AVX2 static void warp_avx2(const incident_guide *guide, uint32_t count, float u[
 void incident_guide_warp(const incident_guide *guide, uint32_t count, float in_out_u[2][INCIDENT_WARPS_MAX],
                          float out_weights[INCIDENT_WARPS_MAX])
 {
-    if (__builtin_cpu_supports("avx2"))
+    if (avx2_is_there())
         warp_avx2(guide, count, in_out_u, out_weights);
     else
         warp_plain(guide, count, in_out_u, out_weights);

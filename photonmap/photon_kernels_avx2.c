@@ -4,9 +4,7 @@
 
 #if defined(__x86_64__)
 
-#include <immintrin.h>
-
-#define AVX2 __attribute__((target("avx2,popcnt")))
+#include "avx2.h"
 
 enum { WIDTH = 8 };
 
@@ -176,7 +174,7 @@ AVX2 static void scan(const photon_block *blocks, const photon_reach *reach, con
 const photon_kernels *photon_kernels_avx2(void)
 {
     static const photon_kernels KERNELS = {find_leaves, meet_plane, descend, scan};
-    return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("popcnt") ? &KERNELS : NULL;
+    return avx2_is_there() ? &KERNELS : NULL;
 }
 
 #else
