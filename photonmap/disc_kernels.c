@@ -6,13 +6,13 @@ static uint32_t find_leaves(const photon_query *q, photon_subtree subtree, float
 {
     uint32_t count = 0, base = (1u << q->tree->depth) - 1;
     const uint32_t levels = q->tree->depth - (31 - (uint32_t)__builtin_clz(subtree.node + 1));
-    for (uint32_t way = 0; way < 1u << levels; way++) {
+    for (uint32_t leaf = 0; leaf < 1u << levels; leaf++) { /* its bits, from the highest on, are the turns to it */
         photon_lanes offset = subtree.offset;
         uint32_t node = subtree.node;
         bool is_there = true; /* beyond a plane at infinity there is nothing */
         for (uint32_t level = levels; level-- > 0;) {
             photon_tree_node n = q->tree->nodes[node];
-            uint32_t goes_right = way >> level & 1;
+            uint32_t goes_right = leaf >> level & 1;
             if (goes_right != (q->position[n.axis] >= n.split)) {
                 offset = photon_lanes_replace(offset, q->at - photon_lanes_fill(n.split), n.axis);
                 is_there = is_there && n.split < INFINITY;

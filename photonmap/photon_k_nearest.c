@@ -15,13 +15,13 @@ static uint32_t first_leaf(const photon_query *q)
  * too large. */
 static void stack_other_sides(photon_query *q, uint32_t node, uint32_t height, float limit)
 {
-    uint32_t way = node + 1; /* the heap's order: the ancestor `up` levels above is way >> up */
+    uint32_t heap_index = node + 1;
     float most = photon_query_hair_beyond(limit);
     q->visits = 0;
     for (uint32_t up = q->tree->depth - height; up > 0; up--) {
-        photon_tree_node n = q->tree->nodes[(way >> up) - 1];
+        photon_tree_node n = q->tree->nodes[(heap_index >> up) - 1];
         photon_query_push(q, photon_lanes_fill(0.0f), q->at - photon_lanes_fill(n.split), n.axis,
-                          ((way >> (up - 1)) ^ 1) - 1, most);
+                          ((heap_index >> (up - 1)) ^ 1) - 1, most);
     }
 }
 

@@ -2,8 +2,8 @@
  * Threads: see photon_map.h. */
 #include "photon_map.h"
 
+#include "lookup_kernels.h"
 #include "parallel_for.h"
-#include "photon_kernels.h"
 #include "photon_survey.h"
 #include "quarter_octave.h"
 #include "rays/transmittance.h"
@@ -368,7 +368,7 @@ void photon_map_leaves(const photon_map *map, const float *positions, uint32_t s
                        uint32_t *out_leaves)
 {
     if (map->irradiance_photons.count > 0)
-        photon_kernels_best()->find_leaves(&map->irradiance_photons, positions, stride, count, out_leaves);
+        lookup_kernels_best()->find_leaves(&map->irradiance_photons, positions, stride, count, out_leaves);
     else
         memset(out_leaves, 0, count * sizeof *out_leaves);
 }

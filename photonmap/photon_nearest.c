@@ -2,7 +2,7 @@
  * From the query's leaf upwards: mostly its cell holds all that may be nearer than what the leaf has. The way down to a
  * leaf, with the cells along it, is kept from one query to the next.
  * Threads: read only, but for the caller's walk. */
-#include "photon_kernels.h"
+#include "lookup_kernels.h"
 #include "photon_query.h"
 
 #include <string.h>
@@ -10,8 +10,8 @@
 void photon_walk_init(photon_walk *walk, const photon_tree *tree)
 {
     walk->tree = tree;
-    walk->kernels = photon_kernels_best();
-    walk->way = 0;
+    walk->kernels = lookup_kernels_best();
+    walk->leaf_heap_index = 0;
     walk->normal = (vec3){0.0f, 0.0f, 0.0f};
     walk->min_cos = 0.0f;
     walk->similar_code = walk->other_code = PHOTON_QUERY_NO_CODE;
@@ -28,21 +28,20 @@ static inline photon_lanes load_lanes(const float *four)
     return lanes;
 }
 
-/* Works out the cells on the way to the leaf, from where it parts from the last one's. A node's number plus one, in
- * binary, is 1 and the turns on the way to it. */
+/* Works out the cells of the nodes above the leaf, from where they differ from the last leaf's. */
 static void walk_to(photon_walk *walk, uint32_t leaf)
 {
     const photon_tree *tree = walk->tree;
-    uint32_t depth = tree->depth, way = (1u << depth) + leaf, parted = walk->way ^ way;
+    uint32_t depth = tree->depth, heap_index = (1u << depth) + leaf, parted = walk->leaf_heap_index ^ heap_index;
     if (parted == 0)
         return;
     uint32_t highest = 31 - (uint32_t)__builtin_clz(parted), level = highest >= depth ? 0 : depth - 1 - highest;
-    walk->way = way;
+    walk->leaf_heap_index = heap_index;
     photon_lanes low = load_lanes(walk->low[level]), high = load_lanes(walk->high[level]);
     for (; level < depth; level++) {
-        photon_tree_node n = tree->nodes[(way >> (depth - level)) - 1];
+        photon_tree_node n = tree->nodes[(heap_index >> (depth - level)) - 1];
         photon_lanes split = photon_lanes_fill(n.split);
-        if (way >> (depth - 1 - level) & 1)
+        if (heap_index >> (depth - 1 - level) & 1)
             low = photon_lanes_replace(low, split, n.axis);
         else if (n.split < INFINITY) /* else there is nothing beyond */
             high = photon_lanes_replace(high, split, n.axis);
@@ -99,7 +98,7 @@ uint32_t photon_walk_nearest(photon_walk *walk, uint32_t leaf, vec3 position, ve
         limit = photon_neighbor_distance_squared(nearest);
         if (cell_holds(walk, level, q.at, limit))
             break;
-        uint32_t child = walk->way >> (tree->depth - level), block;
+        uint32_t child = walk->leaf_heap_index >> (tree->depth - level), block;
         photon_tree_node n = tree->nodes[(child >> 1) - 1];
         q.visits = 0;
         photon_query_push(&q, photon_lanes_fill(0.0f), q.at - photon_lanes_fill(n.split), n.axis, (child ^ 1) - 1,

@@ -22,10 +22,12 @@ typedef struct photon_tree_node {
 enum { PHOTON_SUBTREE_LEVELS = 3 };
 
 typedef struct photon_tree {
-    photon_block *blocks;    /* borrowed */
-    uint32_t count;          /* of photons, below PHOTON_NONE */
-    uint32_t depth;          /* all leaves are at this depth; 2^depth - 1 nodes, some with nothing on their right */
-    photon_tree_node *nodes; /* children of i at 2 i + 1 and 2 i + 2 */
+    photon_block *blocks; /* borrowed */
+    uint32_t count;       /* of photons, below PHOTON_NONE */
+    uint32_t depth;       /* all leaves are at this depth; 2^depth - 1 nodes, some with nothing on their right */
+    /* Children of i at 2 i + 1 and 2 i + 2. i + 1 is the node's heap index: without its last bits it is that of an
+     * ancestor, as many levels above; with the last bit flipped, that of the other child of the same parent. */
+    photon_tree_node *nodes;
 } photon_tree;
 
 /* Builds a tree from records of photon_records_create. The records are reordered, so that their indices change, and
@@ -65,12 +67,12 @@ uint32_t photon_tree_leaf(const photon_tree *tree, vec3 position);
 
 enum { PHOTON_TREE_DEPTH_MAX = 32, PHOTON_WALK_AXES = 4 };
 
-/* The path to the leaf of the last lookup, with the cells of its nodes: the next lookup is cheap where its leaf is
- * near. The fourth axis has no bounds. */
+/* The leaf of the last lookup, and the cells of the nodes above it by their levels: the next lookup is cheap where its
+ * leaf is near. The fourth axis has no bounds. */
 typedef struct photon_walk {
     const photon_tree *tree;
-    const struct photon_kernels *kernels; /* for many lookups at once (photon_kernels.h); they change the time alone */
-    uint32_t way;                         /* to the leaf of the last lookup; 0: there was none */
+    const struct lookup_kernels *kernels; /* for many lookups at once (lookup_kernels.h); they change the time alone */
+    uint32_t leaf_heap_index;             /* 0: there was no lookup yet */
     vec3 normal;                          /* of that lookup */
     float min_cos;                        /* of that lookup */
     uint32_t similar_code, other_code;    /* normals that were last found similar to it, and not */

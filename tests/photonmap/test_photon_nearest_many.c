@@ -1,7 +1,7 @@
 /* test_photon_nearest_many.c: many points at once find the photons that each finds alone, and the kernels for AVX2
  * and for AVX-512 do what the plain ones do, to the bit. */
 #include "fixtures/test_scene.h"
-#include "photon_kernels.h"
+#include "lookup_kernels.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -11,7 +11,7 @@ enum { COUNT = 6000, POINTS = 61 * PHOTON_LOOKUPS_MAX / 2 };
 typedef enum cloud { BALL, WALLS, GRID, COINCIDENT, TWO_CLUSTERS, SOME, FEW, CLOUD_KINDS } cloud;
 
 /* The kernels that are held against the plain ones: main runs all tests with each. */
-static const photon_kernels *wide;
+static const lookup_kernels *wide;
 
 static photon_tree make_tree(test_run *r, cloud kind, photon **out_photons)
 {
@@ -68,7 +68,7 @@ static void make_lookups(const photon_tree *tree, uint64_t seed, photon_lookup *
     qsort(lookups, POINTS, sizeof *lookups, by_leaf);
 }
 
-static void check_kernels(const photon_tree *tree, const photon_kernels *kernels, const photon_lookup *lookups)
+static void check_kernels(const photon_tree *tree, const lookup_kernels *kernels, const photon_lookup *lookups)
 {
     static const float RADII[] = {0.01f, 0.3f, 5.0f, 1e18f};
     photon_walk walk;
@@ -104,7 +104,7 @@ static void many_find_what_each_finds_alone(void **state)
         photon *photons;
         photon_tree tree = make_tree(&r, (cloud)kind, &photons);
         make_lookups(&tree, 100 + (uint64_t)kind, lookups);
-        check_kernels(&tree, &photon_kernels_plain, lookups);
+        check_kernels(&tree, &lookup_kernels_plain, lookups);
         check_kernels(&tree, wide, lookups);
         photon_tree_reset(&tree);
         free(photons);
@@ -119,7 +119,7 @@ static void leaves_are_those_of_each_alone(void **state)
     static photon_lookup lookups[POINTS];
     test_run r;
     test_run_init(&r, 2);
-    const photon_kernels *kernels[] = {&photon_kernels_plain, wide};
+    const lookup_kernels *kernels[] = {&lookup_kernels_plain, wide};
     for (int kind = 0; kind < CLOUD_KINDS; kind++) {
         photon *photons;
         photon_tree tree = make_tree(&r, (cloud)kind, &photons);
@@ -144,33 +144,33 @@ static void leaves_are_those_of_each_alone(void **state)
 static void kernels_write_the_same(void **state)
 {
     (void)state;
-    const photon_kernels *plain = &photon_kernels_plain;
+    const lookup_kernels *plain = &lookup_kernels_plain;
     static photon_lookup lookups[POINTS];
-    static photon_visits from, to[2], found[2];
+    static lookup_visits from, to[2], found[2];
     static float distances[2][sizeof found->node / sizeof *found->node];
     test_run r;
     test_run_init(&r, 2);
     photon *photons;
     photon_tree tree = make_tree(&r, BALL, &photons);
     make_lookups(&tree, 3, lookups);
-    photon_reach reach;
+    lookup_columns points;
     rng random = test_random(4);
     for (uint32_t i = 0; i < PHOTON_LOOKUPS_MAX; i++) {
         vec3 at = lookups[30 * i].position;
-        reach.column[0][i] = at.x, reach.column[1][i] = at.y, reach.column[2][i] = at.z;
-        reach.column[PHOTON_REACH_SQUARED][i] = i % 5 ? 0.02f * rng_float(&random) : -1.0f;
+        points.column[0][i] = at.x, points.column[1][i] = at.y, points.column[2][i] = at.z;
+        points.column[LOOKUP_REACH_SQUARED][i] = i % 5 ? 0.02f * rng_float(&random) : -1.0f;
     }
     for (uint32_t node = 0; node < (1u << tree.depth) - 1; node++)
-        assert_true(plain->meet_plane(&reach, tree.nodes[node]) == wide->meet_plane(&reach, tree.nodes[node]));
+        assert_true(plain->meet_plane(&points, tree.nodes[node]) == wide->meet_plane(&points, tree.nodes[node]));
     from.count = 0;
     for (uint32_t i = 0; i < PHOTON_LOOKUPS_MAX - 3; i++) {
         from.lookup[from.count] = i;
         from.node[from.count++] = 0;
     }
     for (uint32_t level = 0; level < tree.depth; level++) {
-        plain->descend(&tree, &reach, &from, &to[0]);
-        wide->descend(&tree, &reach, &from, &to[1]);
-        assert_true(to[0].count <= PHOTON_VISITS_MAX);
+        plain->descend(&tree, &points, &from, &to[0]);
+        wide->descend(&tree, &points, &from, &to[1]);
+        assert_true(to[0].count <= LOOKUP_VISITS_MAX);
         /* in any order: that of a level does not reach the answer */
         assert_int_equal(to[0].count, to[1].count);
         uint64_t sums[2] = {0, 0};
@@ -183,8 +183,8 @@ static void kernels_write_the_same(void **state)
     assert_true(from.count > PHOTON_LOOKUPS_MAX);
     for (uint32_t i = 0; i < from.count; i++)
         from.node[i] -= (1u << tree.depth) - 1;
-    plain->scan(tree.blocks, &reach, &from, &found[0], distances[0]);
-    wide->scan(tree.blocks, &reach, &from, &found[1], distances[1]);
+    plain->scan(tree.blocks, &points, &from, &found[0], distances[0]);
+    wide->scan(tree.blocks, &points, &from, &found[1], distances[1]);
     assert_true(found[0].count > 0 && found[0].count < from.count);
     assert_int_equal(found[0].count, found[1].count);
     assert_memory_equal(found[0].lookup, found[1].lookup, found[0].count * sizeof *found->lookup);
@@ -202,7 +202,7 @@ int main(void)
         cmocka_unit_test(leaves_are_those_of_each_alone),
         cmocka_unit_test(kernels_write_the_same),
     };
-    const photon_kernels *const all[] = {photon_kernels_avx2(), photon_kernels_avx512()};
+    const lookup_kernels *const all[] = {lookup_kernels_avx2(), lookup_kernels_avx512()};
     static const char *const NAMES[] = {"AVX2", "AVX-512"};
     int failed = 0;
     for (int i = 0; i < 2; i++) {
@@ -211,7 +211,7 @@ int main(void)
             if (i > 0)
                 continue; /* the first group has tested the plain kernels by themselves */
         }
-        wide = all[i] ? all[i] : &photon_kernels_plain;
+        wide = all[i] ? all[i] : &lookup_kernels_plain;
         failed += cmocka_run_group_tests_name(NAMES[i], tests, NULL, NULL);
     }
     return failed;

@@ -1,6 +1,6 @@
-/* photon_kernels_avx2.c: eight at a time; see photon_kernels.h. No fused multiplications: their rounding is another.
- * Threads: see photon_kernels.h. */
-#include "photon_kernels.h"
+/* lookup_kernels_avx2.c: eight at a time; see lookup_kernels.h. No fused multiplications: their rounding is another.
+ * Threads: see lookup_kernels.h. */
+#include "lookup_kernels.h"
 
 #if defined(__x86_64__)
 
@@ -67,9 +67,9 @@ AVX2 static void find_leaves(const photon_tree *tree, const float *positions, ui
         out_leaves[i] = photon_tree_leaf(tree, (vec3){positions[0], positions[1], positions[2]});
 }
 
-AVX2 static uint64_t meet_plane(const photon_reach *reach, photon_tree_node plane)
+AVX2 static uint64_t meet_plane(const lookup_columns *points, photon_tree_node plane)
 {
-    const float *at = reach->column[plane.axis], *most = reach->column[PHOTON_REACH_SQUARED];
+    const float *at = points->column[plane.axis], *most = points->column[LOOKUP_REACH_SQUARED];
     __m256 split = _mm256_set1_ps(plane.split);
     uint64_t met = 0;
     for (uint32_t i = 0; i < PHOTON_LOOKUPS_MAX; i += WIDTH) {
@@ -98,10 +98,10 @@ AVX2 static inline uint32_t store_some_of_8(uint32_t *out, __m256i eight, uint32
     return low + store_some(out + low, _mm256_extracti128_si256(eight, 1), bits >> 4);
 }
 
-AVX2 static void descend(const photon_tree *tree, const photon_reach *reach, const photon_visits *nodes,
-                         photon_visits *out_children)
+AVX2 static void descend(const photon_tree *tree, const lookup_columns *points, const lookup_visits *nodes,
+                         lookup_visits *out_children)
 {
-    const float *columns = reach->column[0];
+    const float *coordinates = points->column[0];
     __m256i one = _mm256_set1_epi32(1), height = _mm256_set1_epi32(PHOTON_LOOKUPS_MAX),
             lanes = _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7);
     uint32_t count = 0;
@@ -112,8 +112,8 @@ AVX2 static void descend(const photon_tree *tree, const photon_reach *reach, con
         __m256i lookup = _mm256_and_si256(load(&nodes->lookup[i]), is_there);
         __m256i node = _mm256_and_si256(load(&nodes->node[i]), is_there);
         nodes_8 n = gather_nodes(tree, node);
-        __m256 at = _mm256_i32gather_ps(columns, _mm256_add_epi32(_mm256_mullo_epi32(n.axis, height), lookup), 4);
-        __m256 most = _mm256_i32gather_ps(reach->column[PHOTON_REACH_SQUARED], lookup, 4);
+        __m256 at = _mm256_i32gather_ps(coordinates, _mm256_add_epi32(_mm256_mullo_epi32(n.axis, height), lookup), 4);
+        __m256 most = _mm256_i32gather_ps(points->column[LOOKUP_REACH_SQUARED], lookup, 4);
         __m256 off = _mm256_sub_ps(at, n.split);
         __m256i is_right = _mm256_castps_si256(_mm256_cmp_ps(at, n.split, _CMP_GE_OQ)); /* -1 */
         __m256i first_child = _mm256_add_epi32(_mm256_add_epi32(node, node), one);
@@ -151,8 +151,8 @@ AVX2 static inline float block_nearest(const photon_block *b, __m256 px, __m256 
     return _mm256_cvtss_f32(least);
 }
 
-AVX2 static void scan(const photon_block *blocks, const photon_reach *reach, const photon_visits *leaves,
-                      photon_visits *out_photons, float *out_distances_squared)
+AVX2 static void scan(const photon_block *blocks, const lookup_columns *points, const lookup_visits *leaves,
+                      lookup_visits *out_photons, float *out_distances_squared)
 {
     enum { AHEAD = 6 };
     uint32_t count = 0;
@@ -160,25 +160,25 @@ AVX2 static void scan(const photon_block *blocks, const photon_reach *reach, con
         uint32_t lane, lookup = leaves->lookup[i], leaf = leaves->node[i];
         if (i + AHEAD < leaves->count)
             photon_block_prefetch(&blocks[leaves->node[i + AHEAD]]);
-        float d = block_nearest(&blocks[leaf], _mm256_broadcast_ss(&reach->column[0][lookup]),
-                                _mm256_broadcast_ss(&reach->column[1][lookup]),
-                                _mm256_broadcast_ss(&reach->column[2][lookup]), &lane);
+        float d = block_nearest(&blocks[leaf], _mm256_broadcast_ss(&points->column[0][lookup]),
+                                _mm256_broadcast_ss(&points->column[1][lookup]),
+                                _mm256_broadcast_ss(&points->column[2][lookup]), &lane);
         out_photons->lookup[count] = lookup;
         out_photons->node[count] = leaf * PHOTON_BLOCK_LANES + lane;
         out_distances_squared[count] = d;
-        count += d <= reach->column[PHOTON_REACH_SQUARED][lookup];
+        count += d <= points->column[LOOKUP_REACH_SQUARED][lookup];
     }
     out_photons->count = count;
 }
 
-const photon_kernels *photon_kernels_avx2(void)
+const lookup_kernels *lookup_kernels_avx2(void)
 {
-    static const photon_kernels KERNELS = {find_leaves, meet_plane, descend, scan};
+    static const lookup_kernels KERNELS = {find_leaves, meet_plane, descend, scan};
     return avx2_is_there() ? &KERNELS : NULL;
 }
 
 #else
 
-const photon_kernels *photon_kernels_avx2(void) { return NULL; }
+const lookup_kernels *lookup_kernels_avx2(void) { return NULL; }
 
 #endif

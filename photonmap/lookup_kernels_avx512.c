@@ -1,6 +1,6 @@
-/* photon_kernels_avx512.c: sixteen at a time; see photon_kernels.h. No fused multiplications: their rounding is
- * another. Threads: see photon_kernels.h. */
-#include "photon_kernels.h"
+/* lookup_kernels_avx512.c: sixteen at a time; see lookup_kernels.h. No fused multiplications: their rounding is
+ * another. Threads: see lookup_kernels.h. */
+#include "lookup_kernels.h"
 
 #if defined(__x86_64__)
 
@@ -83,9 +83,9 @@ AVX512 static void find_leaves(const photon_tree *tree, const float *positions, 
         out_leaves[i] = photon_tree_leaf(tree, (vec3){positions[0], positions[1], positions[2]});
 }
 
-AVX512 static uint64_t meet_plane(const photon_reach *reach, photon_tree_node plane)
+AVX512 static uint64_t meet_plane(const lookup_columns *points, photon_tree_node plane)
 {
-    const float *at = reach->column[plane.axis], *most = reach->column[PHOTON_REACH_SQUARED];
+    const float *at = points->column[plane.axis], *most = points->column[LOOKUP_REACH_SQUARED];
     const __m512 split = _mm512_set1_ps(plane.split);
     uint64_t met = 0;
     for (uint32_t i = 0; i < PHOTON_LOOKUPS_MAX; i += WIDTH) {
@@ -113,11 +113,11 @@ AVX512 static inline __m512 look_up(const column_64 *c, __m512i lookup, __mmask1
                               _mm512_permutex2var_ps(c->quarter[2], lookup, c->quarter[3]));
 }
 
-AVX512 static void descend(const photon_tree *tree, const photon_reach *reach, const photon_visits *nodes,
-                           photon_visits *out_children)
+AVX512 static void descend(const photon_tree *tree, const lookup_columns *points, const lookup_visits *nodes,
+                           lookup_visits *out_children)
 {
-    const column_64 x = load_column(reach->column[0]), y = load_column(reach->column[1]),
-                    z = load_column(reach->column[2]), reaches = load_column(reach->column[PHOTON_REACH_SQUARED]);
+    const column_64 x = load_column(points->column[0]), y = load_column(points->column[1]),
+                    z = load_column(points->column[2]), reaches = load_column(points->column[LOOKUP_REACH_SQUARED]);
     const __m512i one = _mm512_set1_epi32(1), half = _mm512_set1_epi32(PHOTON_LOOKUPS_MAX / 2);
     uint32_t count = 0;
     for (uint32_t i = 0; i < nodes->count; i += WIDTH) {
@@ -147,12 +147,12 @@ AVX512 static void descend(const photon_tree *tree, const photon_reach *reach, c
 }
 
 /* photon_block_nearest. */
-AVX512 static inline float block_nearest(const photon_block *b, const photon_reach *reach, uint32_t lookup,
+AVX512 static inline float block_nearest(const photon_block *b, const lookup_columns *points, uint32_t lookup,
                                          uint32_t *out_lane)
 {
-    __m512 x = _mm512_sub_ps(_mm512_load_ps(b->position[0]), _mm512_set1_ps(reach->column[0][lookup]));
-    __m512 y = _mm512_sub_ps(_mm512_load_ps(b->position[1]), _mm512_set1_ps(reach->column[1][lookup]));
-    __m512 z = _mm512_sub_ps(_mm512_load_ps(b->position[2]), _mm512_set1_ps(reach->column[2][lookup]));
+    __m512 x = _mm512_sub_ps(_mm512_load_ps(b->position[0]), _mm512_set1_ps(points->column[0][lookup]));
+    __m512 y = _mm512_sub_ps(_mm512_load_ps(b->position[1]), _mm512_set1_ps(points->column[1][lookup]));
+    __m512 z = _mm512_sub_ps(_mm512_load_ps(b->position[2]), _mm512_set1_ps(points->column[2][lookup]));
     __m512 d = _mm512_add_ps(_mm512_add_ps(_mm512_mul_ps(x, x), _mm512_mul_ps(y, y)), _mm512_mul_ps(z, z));
     /* of what is no number, the second */
     __m256 eight =
@@ -165,8 +165,8 @@ AVX512 static inline float block_nearest(const photon_block *b, const photon_rea
     return _mm_cvtss_f32(least);
 }
 
-AVX512 static void scan(const photon_block *blocks, const photon_reach *reach, const photon_visits *leaves,
-                        photon_visits *out_photons, float *out_distances_squared)
+AVX512 static void scan(const photon_block *blocks, const lookup_columns *points, const lookup_visits *leaves,
+                        lookup_visits *out_photons, float *out_distances_squared)
 {
     enum { AHEAD = 6 };
     uint32_t count = 0;
@@ -174,23 +174,23 @@ AVX512 static void scan(const photon_block *blocks, const photon_reach *reach, c
         uint32_t lane, lookup = leaves->lookup[i], leaf = leaves->node[i];
         if (i + AHEAD < leaves->count)
             photon_block_prefetch(&blocks[leaves->node[i + AHEAD]]);
-        float d = block_nearest(&blocks[leaf], reach, lookup, &lane);
+        float d = block_nearest(&blocks[leaf], points, lookup, &lane);
         out_photons->lookup[count] = lookup;
         out_photons->node[count] = leaf * PHOTON_BLOCK_LANES + lane;
         out_distances_squared[count] = d;
-        count += d <= reach->column[PHOTON_REACH_SQUARED][lookup];
+        count += d <= points->column[LOOKUP_REACH_SQUARED][lookup];
     }
     out_photons->count = count;
 }
 
-const photon_kernels *photon_kernels_avx512(void)
+const lookup_kernels *lookup_kernels_avx512(void)
 {
-    static const photon_kernels KERNELS = {find_leaves, meet_plane, descend, scan};
+    static const lookup_kernels KERNELS = {find_leaves, meet_plane, descend, scan};
     return avx512_is_there() ? &KERNELS : NULL;
 }
 
 #else
 
-const photon_kernels *photon_kernels_avx512(void) { return NULL; }
+const lookup_kernels *lookup_kernels_avx512(void) { return NULL; }
 
 #endif
