@@ -78,8 +78,8 @@ static uint32_t list_between(const photon_found *f, float low, float high, photo
     return count;
 }
 
-static uint32_t sum_on_level(const photon_disc *disc, const photon_found *f, photon_disc_sums *out_sums,
-                             photon_neighbor *out_doubtful)
+static uint32_t sum_on_surface(const photon_disc *disc, const photon_found *f, photon_disc_sums *out_sums,
+                               photon_neighbor *out_doubtful)
 {
     uint32_t kept = 0, doubtful = 0;
     *out_sums = (photon_disc_sums){{0}, {0}};
@@ -88,7 +88,7 @@ static uint32_t sum_on_level(const photon_disc *disc, const photon_found *f, pho
             continue;
         uint32_t index = photon_found_index(f, i);
         vec3 offset = vec3_sub(photon_block_position(disc->blocks, index), disc->position);
-        if (photon_disc_is_on_level(disc, offset, photon_block_normal(disc->blocks, index))) {
+        if (photon_disc_is_on_surface(disc, offset, photon_block_normal(disc->blocks, index))) {
             photon_disc_add(disc, index, out_sums);
             kept++;
         } else {
@@ -115,8 +115,8 @@ static uint32_t sum_in_region(const photon_disc *disc, const surface_region *reg
     return inside;
 }
 
-const disc_kernels disc_kernels_plain = {PHOTON_SUBTREE_LEVELS, find_leaves,  collect,      count_within,
-                                         list_between,          sum_on_level, sum_in_region};
+const disc_kernels disc_kernels_plain = {PHOTON_SUBTREE_LEVELS, find_leaves,    collect,      count_within,
+                                         list_between,          sum_on_surface, sum_in_region};
 
 const disc_kernels *disc_kernels_best(void)
 {

@@ -27,7 +27,7 @@ typedef struct photon_disc {
     const photon_block *blocks;
     vec3 position, normal;
     float radius;          /* > 0 */
-    float level_height;    /* scene units: photons no higher above or below the point's plane lie on its surface */
+    float flat_height;     /* scene units: photons no higher above or below the point's plane lie on its surface */
     int flux_exponent_max; /* of any photon of the map */
     bool has_offsets;      /* photon_disc_sums.offset is wanted; else it need not be right */
 } photon_disc;
@@ -73,8 +73,8 @@ typedef struct disc_kernels {
 
     /* Sums the photons found that lie on the point's surface, as heights and normals tell. out_doubtful: the entries
      * of the others in found->distances_squared. Returns the number summed. */
-    uint32_t (*sum_on_level)(const photon_disc *disc, const photon_found *found, photon_disc_sums *out_sums,
-                             photon_neighbor *out_doubtful);
+    uint32_t (*sum_on_surface)(const photon_disc *disc, const photon_found *found, photon_disc_sums *out_sums,
+                               photon_neighbor *out_doubtful);
 
     /* Sums the photons found that are in the region. Returns their number. */
     uint32_t (*sum_in_region)(const photon_disc *disc, const surface_region *region, const photon_found *found,
@@ -82,11 +82,11 @@ typedef struct disc_kernels {
 } disc_kernels;
 
 /* Returns whether a photon lies on the surface of the point, as heights and normals tell: no lower than on a convex
- * surface with the two normals, and no higher than the level. */
-static inline bool photon_disc_is_on_level(const photon_disc *disc, vec3 offset, uint16_t normal_code)
+ * surface with the two normals, and no higher than flat_height. */
+static inline bool photon_disc_is_on_surface(const photon_disc *disc, vec3 offset, uint16_t normal_code)
 {
-    float height = vec3_dot(offset, disc->normal), below = -height - disc->level_height;
-    if (fabsf(height) <= disc->level_height)
+    float height = vec3_dot(offset, disc->normal), below = -height - disc->flat_height;
+    if (fabsf(height) <= disc->flat_height)
         return true;
     /* below <= lateral tan(angle between the normals), squared; the angle is less than 90 degrees */
     vec3 n = direction_decode_unnormalized(normal_code);

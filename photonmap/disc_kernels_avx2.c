@@ -376,17 +376,17 @@ AVX2 static inline bool find_photons(const photon_disc *disc, const photon_found
     return true;
 }
 
-/* photon_disc_is_on_level. */
-AVX2 static inline __m256i find_on_level(const photon_disc *disc, const photons_8 *p)
+/* photon_disc_is_on_surface. */
+AVX2 static inline __m256i find_on_surface(const photon_disc *disc, const photons_8 *p)
 {
     vec3_8 normal = fill(disc->normal);
-    __m256 level = _mm256_set1_ps(disc->level_height), height = dot(p->offset, normal);
-    __m256 is_flat = _mm256_cmp_ps(absolute(height), level, _CMP_LE_OQ);
+    __m256 flat = _mm256_set1_ps(disc->flat_height), height = dot(p->offset, normal);
+    __m256 is_flat = _mm256_cmp_ps(absolute(height), flat, _CMP_LE_OQ);
     if (_mm256_testc_ps(is_flat, _mm256_castsi256_ps(p->is_found)))
         return _mm256_castps_si256(is_flat);
     __m128i codes = _mm_load_si128((const __m128i *)(const void *)&p->block->normal[p->lane]);
     vec3_8 n = decode(_mm256_cvtepu16_epi32(codes));
-    __m256 below = _mm256_sub_ps(negate(height), level), d = dot(n, normal), square = _mm256_mul_ps(d, d);
+    __m256 below = _mm256_sub_ps(negate(height), flat), d = dot(n, normal), square = _mm256_mul_ps(d, d);
     __m256 lateral_squared = _mm256_sub_ps(dot(p->offset, p->offset), _mm256_mul_ps(height, height));
     __m256 least = _mm256_mul_ps(_mm256_mul_ps(below, below), square);
     __m256 most = _mm256_mul_ps(lateral_squared, _mm256_sub_ps(dot(n, n), square));
@@ -395,10 +395,10 @@ AVX2 static inline __m256i find_on_level(const photon_disc *disc, const photons_
     return _mm256_castps_si256(_mm256_or_ps(is_flat, is_convex));
 }
 
-AVX2 __attribute__((always_inline)) static inline uint32_t sum_on_level_as(const photon_disc *disc, bool has_offsets,
-                                                                           const photon_found *f,
-                                                                           photon_disc_sums *out_sums,
-                                                                           photon_neighbor *out_doubtful)
+AVX2 __attribute__((always_inline)) static inline uint32_t sum_on_surface_as(const photon_disc *disc, bool has_offsets,
+                                                                             const photon_found *f,
+                                                                             photon_disc_sums *out_sums,
+                                                                             photon_neighbor *out_doubtful)
 {
     const __m256 scale = offset_scale(disc);
     const uint32_t entries = f->leaf_count * PHOTON_BLOCK_LANES;
@@ -411,22 +411,22 @@ AVX2 __attribute__((always_inline)) static inline uint32_t sum_on_level_as(const
             photons_8 p;
             if (!find_photons(disc, f, i, &p))
                 continue;
-            __m256i keeps = _mm256_and_si256(find_on_level(disc, &p), p.is_found);
+            __m256i keeps = _mm256_and_si256(find_on_surface(disc, &p), p.is_found);
             sums_add(&sums, disc, has_offsets, scale, &p.block->flux[p.lane], p.offset, keeps, out_sums);
-            uint32_t on_level = (uint32_t)_mm256_movemask_ps(_mm256_castsi256_ps(keeps));
-            kept += (uint32_t)__builtin_popcount(on_level);
-            for (uint32_t rest = p.found & ~on_level; rest; rest &= rest - 1)
+            uint32_t on_surface = (uint32_t)_mm256_movemask_ps(_mm256_castsi256_ps(keeps));
+            kept += (uint32_t)__builtin_popcount(on_surface);
+            for (uint32_t rest = p.found & ~on_surface; rest; rest &= rest - 1)
                 out_doubtful[doubtful++] = i + (uint32_t)__builtin_ctz(rest);
         }
     }
     return kept;
 }
 
-AVX2 static uint32_t sum_on_level(const photon_disc *disc, const photon_found *f, photon_disc_sums *out_sums,
-                                  photon_neighbor *out_doubtful)
+AVX2 static uint32_t sum_on_surface(const photon_disc *disc, const photon_found *f, photon_disc_sums *out_sums,
+                                    photon_neighbor *out_doubtful)
 {
-    return disc->has_offsets ? sum_on_level_as(disc, true, f, out_sums, out_doubtful)
-                             : sum_on_level_as(disc, false, f, out_sums, out_doubtful);
+    return disc->has_offsets ? sum_on_surface_as(disc, true, f, out_sums, out_doubtful)
+                             : sum_on_surface_as(disc, false, f, out_sums, out_doubtful);
 }
 
 /* surface_region_contains of points by their offset from the centre. */
@@ -471,8 +471,8 @@ AVX2 static uint32_t sum_in_region(const photon_disc *disc, const surface_region
 
 const disc_kernels *disc_kernels_avx2(void)
 {
-    static const disc_kernels KERNELS = {PHOTON_SUBTREE_LEVELS, find_leaves,  collect,      count_within,
-                                         list_between,          sum_on_level, sum_in_region};
+    static const disc_kernels KERNELS = {PHOTON_SUBTREE_LEVELS, find_leaves,    collect,      count_within,
+                                         list_between,          sum_on_surface, sum_in_region};
     return avx2_is_there() ? &KERNELS : NULL;
 }
 

@@ -300,17 +300,17 @@ AVX512 static inline __m512 offset_scale(const photon_disc *disc)
     return _mm512_set1_ps(PHOTON_DISC_OFFSET_UNIT / disc->radius);
 }
 
-/* Returns, as bits, photon_disc_is_on_level of those found. */
-AVX512 static inline __mmask16 find_on_level(const photon_disc *disc, const photon_block *b, vec3_16 offset,
-                                             __mmask16 found)
+/* Returns, as bits, photon_disc_is_on_surface of those found. */
+AVX512 static inline __mmask16 find_on_surface(const photon_disc *disc, const photon_block *b, vec3_16 offset,
+                                               __mmask16 found)
 {
     vec3_16 normal = fill(disc->normal);
-    __m512 level = _mm512_set1_ps(disc->level_height), height = dot(offset, normal);
-    uint32_t is_flat = _mm512_mask_cmp_ps_mask(found, _mm512_abs_ps(height), level, _CMP_LE_OQ);
+    __m512 flat = _mm512_set1_ps(disc->flat_height), height = dot(offset, normal);
+    uint32_t is_flat = _mm512_mask_cmp_ps_mask(found, _mm512_abs_ps(height), flat, _CMP_LE_OQ);
     if (is_flat == found)
         return found;
     vec3_16 n = decode(b->normal);
-    __m512 below = _mm512_sub_ps(negate(height), level), d = dot(n, normal), square = _mm512_mul_ps(d, d);
+    __m512 below = _mm512_sub_ps(negate(height), flat), d = dot(n, normal), square = _mm512_mul_ps(d, d);
     __m512 lateral_squared = _mm512_sub_ps(dot(offset, offset), _mm512_mul_ps(height, height));
     __m512 least = _mm512_mul_ps(_mm512_mul_ps(below, below), square);
     __m512 most = _mm512_mul_ps(lateral_squared, _mm512_sub_ps(dot(n, n), square));
@@ -319,10 +319,10 @@ AVX512 static inline __mmask16 find_on_level(const photon_disc *disc, const phot
     return (__mmask16)(is_flat | is_convex);
 }
 
-AVX512 __attribute__((always_inline)) static inline uint32_t sum_on_level_as(const photon_disc *disc, bool has_offsets,
-                                                                             const photon_found *f,
-                                                                             photon_disc_sums *out_sums,
-                                                                             photon_neighbor *out_doubtful)
+AVX512 __attribute__((always_inline)) static inline uint32_t sum_on_surface_as(const photon_disc *disc,
+                                                                               bool has_offsets, const photon_found *f,
+                                                                               photon_disc_sums *out_sums,
+                                                                               photon_neighbor *out_doubtful)
 {
     const __m512 scale = offset_scale(disc), limit = _mm512_set1_ps(f->limit);
     const vec3_16 at = fill(disc->position);
@@ -339,21 +339,21 @@ AVX512 __attribute__((always_inline)) static inline uint32_t sum_on_level_as(con
                 continue;
             const photon_block *b = &disc->blocks[f->leaves[i]];
             vec3_16 offset = sub(positions_of(b), at);
-            uint32_t on_level = find_on_level(disc, b, offset, found);
-            sums_add(&sums, disc, has_offsets, scale, b, offset, (__mmask16)on_level, out_sums);
-            kept += (uint32_t)__builtin_popcount(on_level);
-            for (uint32_t rest = found & ~on_level; rest; rest &= rest - 1)
+            uint32_t on_surface = find_on_surface(disc, b, offset, found);
+            sums_add(&sums, disc, has_offsets, scale, b, offset, (__mmask16)on_surface, out_sums);
+            kept += (uint32_t)__builtin_popcount(on_surface);
+            for (uint32_t rest = found & ~on_surface; rest; rest &= rest - 1)
                 out_doubtful[doubtful++] = entry + (uint32_t)__builtin_ctz(rest);
         }
     }
     return kept;
 }
 
-AVX512 static uint32_t sum_on_level(const photon_disc *disc, const photon_found *f, photon_disc_sums *out_sums,
-                                    photon_neighbor *out_doubtful)
+AVX512 static uint32_t sum_on_surface(const photon_disc *disc, const photon_found *f, photon_disc_sums *out_sums,
+                                      photon_neighbor *out_doubtful)
 {
-    return disc->has_offsets ? sum_on_level_as(disc, true, f, out_sums, out_doubtful)
-                             : sum_on_level_as(disc, false, f, out_sums, out_doubtful);
+    return disc->has_offsets ? sum_on_surface_as(disc, true, f, out_sums, out_doubtful)
+                             : sum_on_surface_as(disc, false, f, out_sums, out_doubtful);
 }
 
 /* Returns, as bits, surface_region_contains of points by their offset from the centre. */
@@ -404,8 +404,8 @@ AVX512 static uint32_t sum_in_region(const photon_disc *disc, const surface_regi
 
 const disc_kernels *disc_kernels_avx512(void)
 {
-    static const disc_kernels KERNELS = {
-        DISC_SUBTREE_LEVELS_MAX, find_leaves, collect, count_within, list_between, sum_on_level, sum_in_region};
+    static const disc_kernels KERNELS = {DISC_SUBTREE_LEVELS_MAX, find_leaves,  collect, count_within, list_between,
+                                         sum_on_surface,          sum_in_region};
     return avx512_is_there() ? &KERNELS : NULL;
 }
 

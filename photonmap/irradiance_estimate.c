@@ -8,7 +8,7 @@
 
 /* A photon whose height above or below the tangent plane is more than this share of the disc's radius may lie on
  * another surface: rays tell whether the point sees it. */
-static const float LEVEL_HEIGHT_SHARE = 1.0f / 32.0f;
+static const float FLAT_HEIGHT_SHARE = 1.0f / 32.0f;
 
 /* Photons that crowd to one side of the disc, by more than this share of its radius on average, hint at an edge. */
 static const float LOPSIDED = 0.15f;
@@ -28,7 +28,7 @@ static bool is_lopsided(const photon_disc_sums *sums, vec3 normal, uint32_t coun
 }
 
 /* Returns whether a photon that lies so high or low that it may be on a floor above or below is on the point's own. */
-static bool is_of_this_level(const photon_map *map, const photon_disc *disc, uint32_t index, uint64_t *in_out_rays)
+static bool is_on_own_surface(const photon_map *map, const photon_disc *disc, uint32_t index, uint64_t *in_out_rays)
 {
     vec3 at = photon_block_position(map->blocks, index);
     float height = vec3_dot(vec3_sub(at, disc->position), disc->normal);
@@ -36,7 +36,7 @@ static bool is_of_this_level(const photon_map *map, const photon_disc *disc, uin
         return !photon_map_is_behind_wall(map, map->blocks, disc->position, disc->normal, index, in_out_rays);
     /* the space above a low photon must be empty */
     scene_ray up =
-        scene_ray_make(vec3_add_scaled(at, disc->normal, 0.5f * disc->level_height), vec3_scale(disc->normal, -height));
+        scene_ray_make(vec3_add_scaled(at, disc->normal, 0.5f * disc->flat_height), vec3_scale(disc->normal, -height));
     ++*in_out_rays;
     return !scene_is_blocked(map->surfaces, up, 1.0f);
 }
@@ -68,14 +68,14 @@ static bool rings_lack_flux(const photon_found *found, float inner, float share)
             int exponent = flux_exponent(photon_block_flux(found->blocks, photon_found_index(found, i)));
             exponent_max = exponent > exponent_max ? exponent : exponent_max;
         }
-    uint64_t all = 0, inside = 0, squares = 0;
+    uint64_t all = 0, inside = 0, squares = 0; /* of fluxes' largest channels, in units of 2^(exponent_max - 8) */
     for (uint32_t i = 0; i < entries; i++) {
         if (!(found->distances_squared[i] <= found->limit))
             continue;
         uint32_t code = photon_block_flux(found->blocks, photon_found_index(found, i));
         int shift = exponent_max - flux_exponent(code);
-        uint64_t r = code >> 16 & 255, g = code >> 8 & 255, b = code & 255, largest = r > g ? r : g;
-        uint64_t flux = shift > 2 * FRACTION_BITS ? 0 : ((largest > b ? largest : b) << FRACTION_BITS) >> shift;
+        uint64_t largest = flux_largest_mantissa(code);
+        uint64_t flux = shift > 2 * FRACTION_BITS ? 0 : largest << FRACTION_BITS >> shift;
         all += flux;
         squares += flux * flux;
         inside += found->distances_squared[i] <= inner ? flux : 0;
@@ -137,8 +137,9 @@ static bool region_holds(const photon_map *map, double area, float radius)
     return area >= (double)share_min * (double)AG_PI * (double)least_radius * (double)least_radius;
 }
 
-/* The share of the photons found that must lie on the point's own level, else other levels have set the radius. */
-static const float LEVEL_SHARE_MIN = 0.5f;
+/* The share of the photons found that must lie on the point's own surface, else surfaces above or below have set the
+ * radius. */
+static const float OWN_SHARE_MIN = 0.5f;
 
 /* Returns the reach of an estimate. Among equally far photons their order decides which of them count. */
 static float reach_of(const photon_map *map, const photon_found *found)
@@ -167,14 +168,14 @@ static float find_disc(const photon_map *map, photon_found *found, bool *out_has
 
 /* Sums the photons that lie on the point's own surface, and forgets those that lie above or below it. scratch: room for
  * all of them. */
-static void sum_own_level(const photon_map *map, const photon_disc *disc, photon_found *found, photon_neighbor *scratch,
-                          uint64_t *in_out_rays, photon_disc_sums *out_sums)
+static void sum_own_surface(const photon_map *map, const photon_disc *disc, photon_found *found,
+                            photon_neighbor *scratch, uint64_t *in_out_rays, photon_disc_sums *out_sums)
 {
     const uint32_t count = found->count;
-    const uint32_t on_level = disc_kernels_best()->sum_on_level(disc, found, out_sums, scratch);
-    for (uint32_t i = 0; i < count - on_level; i++) {
+    const uint32_t on_surface = disc_kernels_best()->sum_on_surface(disc, found, out_sums, scratch);
+    for (uint32_t i = 0; i < count - on_surface; i++) {
         uint32_t entry = photon_neighbor_index(scratch[i]), index = photon_found_index(found, entry);
-        if (is_of_this_level(map, disc, index, in_out_rays))
+        if (is_on_own_surface(map, disc, index, in_out_rays))
             photon_disc_add(disc, index, out_sums);
         else
             photon_found_forget_entry(found, entry);
@@ -261,24 +262,24 @@ static irradiance_extent find(const photon_map *map, vec3 position, vec3 normal,
                         .position = position,
                         .normal = normal,
                         .radius = radius,
-                        .level_height = map->surfaces ? radius * LEVEL_HEIGHT_SHARE : INFINITY,
+                        .flat_height = map->surfaces ? radius * FLAT_HEIGHT_SHARE : INFINITY,
                         .flux_exponent_max = map->flux_exponent_max,
                         .has_offsets = map->surfaces && !is_whole};
 
-    /* of its photons those on the point's surface, and no other level's */
+    /* of its photons those on the point's surface, and none above or below it */
     photon_disc_sums sums;
     const uint32_t count = found.count;
-    sum_own_level(map, &disc, &found, scratch, in_out_rays, &sums);
-    bool has_levels = found.count < count;
+    sum_own_surface(map, &disc, &found, scratch, in_out_rays, &sums);
+    bool has_other_surfaces = found.count < count;
 
     /* of its area what is surface */
     double area = (double)AG_PI * (double)radius_squared;
-    irradiance_extent extent = has_levels ? IRRADIANCE_HOLDS_IN_SIGHT : IRRADIANCE_HOLDS_EVERYWHERE;
-    bool is_of_others = has_next && (float)found.count < LEVEL_SHARE_MIN * (float)count;
-    if ((least_area > 0.0 || !is_of_others) && disc.has_offsets &&
-        (has_levels || may_end(map, space, &disc, &found, radius_squared, &sums, in_out_rays)))
+    irradiance_extent extent = has_other_surfaces ? IRRADIANCE_HOLDS_IN_SIGHT : IRRADIANCE_HOLDS_EVERYWHERE;
+    bool are_mostly_others = has_next && (float)found.count < OWN_SHARE_MIN * (float)count;
+    if ((least_area > 0.0 || !are_mostly_others) && disc.has_offsets &&
+        (has_other_surfaces || may_end(map, space, &disc, &found, radius_squared, &sums, in_out_rays)))
         extent = fit_to_surface(map, space, &disc, &found, has_next, extent, least_area, in_out_rays, &sums, &area);
-    if (is_of_others)
+    if (are_mostly_others)
         extent = IRRADIANCE_HOLDS_NOWHERE;
 
     double scale = ldexp(1.0, map->flux_exponent_max - 32) / ((double)map->set.emitted_paths * area);

@@ -11,8 +11,8 @@
 /* The points at which an estimate holds, among those whose nearest photon is the estimate's. */
 typedef enum irradiance_extent {
     IRRADIANCE_HOLDS_NOWHERE,
-    IRRADIANCE_HOLDS_IN_SIGHT,  /* only points that see the estimate's point: a surface ends nearby, or another level is
-                                   there */
+    IRRADIANCE_HOLDS_IN_SIGHT,  /* only points that see the estimate's point: a surface ends nearby, or another one lies
+                                   above or below */
     IRRADIANCE_HOLDS_EVERYWHERE /* no surface ends within photon_map_far */
 } irradiance_extent;
 
@@ -25,10 +25,10 @@ typedef enum irradiance_extent {
  * Returns where the estimate holds. It holds nowhere if the surface within the disc is too small for the photons that a
  * disc holds, as on a strip, a moulding or a leaf: photons per area are right there only on average, by values that are
  * nearly always 0 and otherwise a thousand times too large. *out_irradiance is then that of the whole disc, which
- * includes other surfaces but is bounded. It holds nowhere either if most of the photons found lie on other levels,
- * whose density has then set the radius. The decision depends on geometry, on the density of photons in the whole scene
- * and on the photons of other surfaces, never on the number of photons found on this surface: to accept some outcomes
- * of a random count and not others would bias the mean. */
+ * includes other surfaces but is bounded. It holds nowhere either if most of the photons found lie on surfaces above
+ * or below, whose density has then set the radius. The decision depends on geometry, on the density of photons in the
+ * whole scene and on the photons of other surfaces, never on the number of photons found on this surface: to accept
+ * some outcomes of a random count and not others would bias the mean. */
 irradiance_extent irradiance_estimate_find(const photon_map *map, vec3 position, vec3 normal, photon_neighbor *scratch,
                                            uint64_t *in_out_rays, rgb *out_irradiance);
 

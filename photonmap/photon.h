@@ -64,15 +64,13 @@ static inline uint32_t shared_mantissas(rgb value, int exponent, uint64_t bits)
 
 #define FLUX_EXPONENT_MIN (-128)
 
-/* Flux is >= 0; key is the photon's own number: it decides the rounding. */
+/* Flux is finite and >= 0; key is the photon's own number: it decides the rounding. */
 static inline uint32_t flux_encode(rgb flux, uint64_t key)
 {
     float largest = rgb_max(flux);
     if (!(largest > 0x1p-110f))
         return 0;
     int exponent = shared_exponent_of(largest);
-    if (exponent > 127)
-        return UINT32_MAX;
     return (uint32_t)(exponent + 128) << 24 | shared_mantissas(flux, exponent, hash_mix64(key));
 }
 
@@ -84,11 +82,17 @@ static inline rgb flux_decode(uint32_t code)
     return (rgb){(float)(code >> 16 & 255) * scale, (float)(code >> 8 & 255) * scale, (float)(code & 255) * scale};
 }
 
+/* Returns the largest of the three mantissas. */
+static inline uint32_t flux_largest_mantissa(uint32_t code)
+{
+    uint32_t r = code >> 16 & 255, g = code >> 8 & 255, b = code & 255, of_two = r > g ? r : g;
+    return of_two > b ? of_two : b;
+}
+
 /* Returns rgb_max(flux_decode(code)). */
 static inline float flux_largest(uint32_t code)
 {
-    uint32_t r = code >> 16 & 255, g = code >> 8 & 255, b = code & 255, of_two = r > g ? r : g;
-    return (float)(of_two > b ? of_two : b) * power_of_two(flux_exponent(code));
+    return (float)flux_largest_mantissa(code) * power_of_two(flux_exponent(code));
 }
 
 /* --- directions: octahedral, 8 + 8 bits; within 1 degree --- */

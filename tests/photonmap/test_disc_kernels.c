@@ -108,7 +108,7 @@ static void sums_are_the_same(void **state)
                                 .position = photon_block_position(tree.blocks, photon_index),
                                 .normal = direction_decode(photon_block_normal(tree.blocks, photon_index)),
                                 .radius = 3.0f,
-                                .level_height = LEVELS[round % 4],
+                                .flat_height = LEVELS[round % 4],
                                 .flux_exponent_max = 72,
                                 .has_offsets = round % 3 > 0};
             pick_photons(&random, &tree, disc.position, &found);
@@ -120,9 +120,9 @@ static void sums_are_the_same(void **state)
 
             photon_disc_sums sums[2], sums_inside[2];
             static photon_neighbor doubtful[2][LEAVES * PHOTON_BLOCK_LANES];
-            static bool is_on_level[LEAVES * PHOTON_BLOCK_LANES], is_inside[LEAVES * PHOTON_BLOCK_LANES];
+            static bool is_on_surface[LEAVES * PHOTON_BLOCK_LANES], is_inside[LEAVES * PHOTON_BLOCK_LANES];
             for (int k = 0; k < 2; k++) {
-                kept[k] = kernels[k]->sum_on_level(&disc, &found, &sums[k], doubtful[k]);
+                kept[k] = kernels[k]->sum_on_surface(&disc, &found, &sums[k], doubtful[k]);
                 inside[k] = kernels[k]->sum_in_region(&disc, &region, &found, &sums_inside[k]);
             }
             assert_int_equal(kept[0], kept[1]);
@@ -133,7 +133,7 @@ static void sums_are_the_same(void **state)
                 assert_same_sums(&sums[0], &sums[1]);
             assert_int_equal(inside[0], inside[1]);
             assert_same_sums(&sums_inside[0], &sums_inside[1]);
-            if (disc.level_height == INFINITY)
+            if (disc.flat_height == INFINITY)
                 assert_int_equal(kept[0], found.count);
             doubtful_sum += found.count - kept[0];
             inside_sum += inside[0];
@@ -142,16 +142,16 @@ static void sums_are_the_same(void **state)
             /* what the kept ones add up to, in floating point */
             for (uint32_t i = 0; i < found.leaf_count * PHOTON_BLOCK_LANES; i++) {
                 bool is_found = found.distances_squared[i] <= found.limit;
-                is_on_level[i] = is_found;
+                is_on_surface[i] = is_found;
                 is_inside[i] =
                     is_found &&
                     surface_region_contains(&region, photon_block_position(tree.blocks, photon_found_index(&found, i)));
             }
             for (uint32_t i = 0; i < found.count - kept[0]; i++) {
-                assert_true(is_on_level[doubtful[0][i]]);
-                is_on_level[doubtful[0][i]] = false;
+                assert_true(is_on_surface[doubtful[0][i]]);
+                is_on_surface[doubtful[0][i]] = false;
             }
-            check_sums(&disc, &found, is_on_level, kept[0], &sums[0]);
+            check_sums(&disc, &found, is_on_surface, kept[0], &sums[0]);
             check_sums(&disc, &found, is_inside, inside[0], &sums_inside[0]);
         }
         free(scratch);
