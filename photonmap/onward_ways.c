@@ -65,8 +65,28 @@ static bool meeting_point(const line *a, const line *b, vec3 *out_point)
     return true;
 }
 
-/* The point whose squared distances from lines are least in sum, by how far off it is; of the lines that pass `around`
- * at no more than that angle. */
+/* Solves m x = b by Cramer's rule. Returns false where the determinant is not positive. */
+static bool solve(double m[3][3], const double b[3], vec3 *out_x)
+{
+    double cofactors[3][3], determinant = 0.0;
+    for (int r = 0; r < 3; r++)
+        for (int c = 0; c < 3; c++) {
+            int r1 = (r + 1) % 3, r2 = (r + 2) % 3, c1 = (c + 1) % 3, c2 = (c + 2) % 3;
+            cofactors[r][c] = m[r1][c1] * m[r2][c2] - m[r1][c2] * m[r2][c1];
+        }
+    for (int c = 0; c < 3; c++)
+        determinant += m[0][c] * cofactors[0][c];
+    if (!(determinant > 0.0))
+        return false;
+    float x[3];
+    for (int c = 0; c < 3; c++)
+        x[c] = (float)((cofactors[0][c] * b[0] + cofactors[1][c] * b[1] + cofactors[2][c] * b[2]) / determinant);
+    *out_x = (vec3){x[0], x[1], x[2]};
+    return true;
+}
+
+/* Returns the point whose squared angles, as seen from the lines' beginnings, from these lines are least in sum: of the
+ * lines that pass `around` at no more than that angle. `around` where there is no such point. */
 static vec3 nearest_point(const line *lines, uint32_t count, vec3 around, float angle)
 {
     double m[3][3] = {{0.0}}, b[3] = {0.0};
@@ -86,20 +106,8 @@ static vec3 nearest_point(const line *lines, uint32_t count, vec3 around, float 
                 b[r] += entry * x[c];
             }
     }
-    double cofactors[3][3], determinant = 0.0;
-    for (int r = 0; r < 3; r++)
-        for (int c = 0; c < 3; c++) {
-            int r1 = (r + 1) % 3, r2 = (r + 2) % 3, c1 = (c + 1) % 3, c2 = (c + 2) % 3;
-            cofactors[r][c] = m[r1][c1] * m[r2][c2] - m[r1][c2] * m[r2][c1];
-        }
-    for (int c = 0; c < 3; c++)
-        determinant += m[0][c] * cofactors[0][c];
-    if (!(determinant > 0.0))
-        return around;
-    float out[3];
-    for (int c = 0; c < 3; c++)
-        out[c] = (float)((cofactors[0][c] * b[0] + cofactors[1][c] * b[1] + cofactors[2][c] * b[2]) / determinant);
-    return vec3_add(origin, (vec3){out[0], out[1], out[2]});
+    vec3 from_origin;
+    return solve(m, b, &from_origin) ? vec3_add(origin, from_origin) : around;
 }
 
 /* Where most of the lines meet, and the median of the angles that they pass it at; infinite: nowhere. angles: room for
@@ -199,7 +207,7 @@ void onward_ways_reset(onward_ways *ways)
 
 /* Cones around the ball, and around balls that double from it on, as far as CONE_SINE_MAX: each has half the share of
  * the one within, so that a way that misses the ball by little is not rare by much. */
-static void set_cones(vec3 to, float distance, float radius, onward_lead *out)
+static void set_cones(vec3 to, float distance, float radius, onward_guide *out)
 {
     float share = 1.0f, sum = 0.0f;
     out->towards = frame_from_z(vec3_scale(to, 1.0f / distance));
@@ -216,49 +224,50 @@ static void set_cones(vec3 to, float distance, float radius, onward_lead *out)
         out->share[i] /= sum;
 }
 
-bool onward_ways_find(const onward_ways *ways, vec3 position, vec3 normal, onward_lead *out_lead)
+bool onward_ways_find(const onward_ways *ways, vec3 position, vec3 normal, onward_guide *out_guide)
 {
-    if (!incident_light_find(&ways->histograms, position, normal, &out_lead->guide))
+    if (!incident_light_find(&ways->histograms, position, normal, &out_guide->by_histogram))
         return false;
-    const ways_opening *opening = &ways->openings[out_lead->guide.histogram - ways->histograms.histograms];
+    const ways_opening *opening = &ways->openings[out_guide->by_histogram.histogram - ways->histograms.histograms];
     vec3 to = vec3_sub(opening->center, position);
     float distance = vec3_length(to);
-    out_lead->cone_count = 0;
+    out_guide->cone_count = 0;
     if (opening->radius > 0.0f && distance > FAR * opening->radius)
-        set_cones(to, distance, opening->radius, out_lead);
+        set_cones(to, distance, opening->radius, out_guide);
     return true;
 }
 
-vec3 onward_lead_sample(const onward_lead *lead, vec2 u)
+vec3 onward_guide_sample(const onward_guide *guide, vec2 u)
 {
-    if (lead->cone_count == 0) {
-        incident_guide_warp_one(&lead->guide, &u);
-        return vec3_normalize(frame_to_world(&lead->guide.around, sample_cosine_hemisphere(u)));
+    if (guide->cone_count == 0) {
+        incident_guide_warp_one(&guide->by_histogram, &u);
+        return vec3_normalize(frame_to_world(&guide->by_histogram.around, sample_cosine_hemisphere(u)));
     }
     uint32_t i = 0;
-    while (i + 1 < lead->cone_count && u.x >= lead->share[i])
-        u.x -= lead->share[i++];
-    u.x = float_below_one(u.x / lead->share[i]);
-    return vec3_normalize(frame_to_world(&lead->towards, sample_uniform_cone(u, lead->one_minus_cos[i])));
+    while (i + 1 < guide->cone_count && u.x >= guide->share[i])
+        u.x -= guide->share[i++];
+    u.x = float_below_one(u.x / guide->share[i]);
+    return vec3_normalize(frame_to_world(&guide->towards, sample_uniform_cone(u, guide->one_minus_cos[i])));
 }
 
-float onward_lead_density(const onward_lead *lead, vec3 direction)
+float onward_guide_density(const onward_guide *guide, vec3 direction)
 {
-    if (lead->cone_count == 0)
-        return incident_guide_density(&lead->guide, direction);
-    vec3 aside = vec3_cross(direction, lead->towards.z); /* precise where cones are thin */
+    if (guide->cone_count == 0)
+        return incident_guide_density(&guide->by_histogram, direction);
+    vec3 aside = vec3_cross(direction, guide->towards.z); /* precise where cones are thin */
     float density = 0.0f, sine_squared = vec3_dot(aside, aside);
-    for (uint32_t i = 0; i < lead->cone_count; i++)
-        if (sine_squared <= lead->sine_squared[i])
-            density += lead->share[i] / (2.0f * AG_PI * lead->one_minus_cos[i]);
-    return vec3_dot(direction, lead->towards.z) > 0.0f ? density : 0.0f;
+    for (uint32_t i = 0; i < guide->cone_count; i++)
+        if (sine_squared <= guide->sine_squared[i])
+            density += guide->share[i] / (2.0f * AG_PI * guide->one_minus_cos[i]);
+    return vec3_dot(direction, guide->towards.z) > 0.0f ? density : 0.0f;
 }
 
-float onward_lead_gain(const onward_lead *lead)
+float onward_guide_gain(const onward_guide *guide)
 {
-    if (lead->cone_count == 0)
+    if (guide->cone_count == 0)
         return 1.0f;
     /* a cone may be mostly below the surface: the part above has about its own sine as cosine */
-    float cosine = fmaxf(vec3_dot(lead->towards.z, lead->guide.around.z), 0.5f * sqrtf(lead->sine_squared[0]));
-    return fmaxf(onward_lead_density(lead, lead->towards.z) * AG_PI / cosine, 1.0f);
+    float cosine =
+        fmaxf(vec3_dot(guide->towards.z, guide->by_histogram.around.z), 0.5f * sqrtf(guide->sine_squared[0]));
+    return fmaxf(onward_guide_density(guide, guide->towards.z) * AG_PI / cosine, 1.0f);
 }

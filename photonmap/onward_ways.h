@@ -34,25 +34,25 @@ void onward_ways_reset(onward_ways *ways);
 enum { ONWARD_CONES_MAX = 12 };
 
 /* The density of directions in which light goes on from a point. */
-typedef struct onward_lead {
-    incident_guide guide;
-    /* Nested cones around towards.z, each with its share; without cones the histogram counts alone. */
+typedef struct onward_guide {
+    incident_guide by_histogram; /* of the point's cell; counts where there are no cones */
+    /* Nested cones around towards.z, each with its share of the directions. */
     uint32_t cone_count;
     frame towards;
     float one_minus_cos[ONWARD_CONES_MAX], sine_squared[ONWARD_CONES_MAX], share[ONWARD_CONES_MAX];
-} onward_lead;
+} onward_guide;
 
 /* Finds the density at a point; returns false where nothing is known there. normal: unit, on the side of the incident
  * light. */
-bool onward_ways_find(const onward_ways *ways, vec3 position, vec3 normal, onward_lead *out_lead);
+bool onward_ways_find(const onward_ways *ways, vec3 position, vec3 normal, onward_guide *out_guide);
 
 /* Samples a direction by that density, unit; it may lie below the surface. u: uniform numbers of [0, 1)^2. */
-vec3 onward_lead_sample(const onward_lead *lead, vec2 u);
+vec3 onward_guide_sample(const onward_guide *guide, vec2 u);
 
 /* Returns that density, per solid angle. direction: unit. */
-float onward_lead_density(const onward_lead *lead, vec3 direction);
+float onward_guide_density(const onward_guide *guide, vec3 direction);
 
 /* Returns the ratio of the density to the cosine's in the direction of most importons; 1 for a histogram. */
-float onward_lead_gain(const onward_lead *lead);
+float onward_guide_gain(const onward_guide *guide);
 
 #endif

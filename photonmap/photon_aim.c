@@ -12,7 +12,7 @@ enum { PHOTONS_PER_TRIAL = 8, ROUND_TRIALS_MIN = 1 << 12, ROUND_TRIALS_MAX = 1 <
 /* Before these rounds another one follows the starts that were found from where light is requested, if there are at
  * least STARTS_LEAST. */
 enum { ROUNDS_MAX = ROUNDS + 1, STARTS_LEAST = 64 };
-enum { BLIND_ROUNDS_MAX = 8, USEFUL_LEAST = 32 };
+enum { UNGUIDED_ROUNDS_MAX = 8, USEFUL_LEAST = 32 };
 /* A guide that lowers the variance by less than this factor is not used, since uneven photon weights cost more. Nor is
  * one where, by power alone, this share of the photons is useful, and a path leaves this many useful ones. */
 static const float LEAST_GAIN = 1.5f;
@@ -28,18 +28,20 @@ typedef struct learner {
     const scene *s;
     run_context *run;
     photon_tracing_settings settings;
-    const struct onward_ways *ways; /* of the settings; by power alone paths are not led */
-    float share;
+    const struct onward_ways *ways; /* of the settings; by power alone paths are not guided by them */
+    float share;                    /* of the paths that follow a guide */
     emission_trial *trials;
-    uint32_t count, round_trials, round_count;
+    uint32_t count;                        /* of trials so far, of all rounds */
+    uint32_t round_trials;                 /* of a round with a guide */
+    uint32_t round;                        /* 0: by power alone; else that of guides */
     float split_above;                     /* of the next round, if it has a guide */
-    float stored_share;                    /* of the last one */
+    float stored_share;                    /* of the last round */
     emission_guide guides[ROUNDS_MAX + 1]; /* by which the rounds were traced; then the last one */
-    const emission_guide *found;           /* the guide among them that was built from starts; NULL: none */
-    trial_counts counts, blind;            /* of all trials; of those by power alone */
+    const emission_guide *starts_guide;    /* the one of them that was built from the starts; NULL: none */
+    trial_counts counts, unguided;         /* of all trials; of those by power alone */
 } learner;
 
-static uint32_t last_round(const learner *l) { return l->found ? ROUNDS_MAX : ROUNDS; }
+static uint32_t last_round(const learner *l) { return l->starts_guide ? ROUNDS_MAX : ROUNDS; }
 
 /* Sets what the next round splits by a round's trials, as bright as its guide made them, and by its number of parts. */
 static ag_status set_split(learner *l, const emission_trial *trials, uint32_t count, uint64_t parts)
@@ -52,12 +54,12 @@ static ag_status set_split(learner *l, const emission_trial *trials, uint32_t co
         if (trials[i].value > 0.0f)
             worths[useful++] = trials[i].value / trials[i].density;
     qsort(worths, useful, sizeof *worths, compare_floats);
-    if (useful > 0 && l->round_count == 0) {
+    if (useful > 0 && l->round == 0) {
         l->split_above = worths[(uint32_t)(HIGH_PERCENTILE * (float)useful)];
     } else if (useful > 0) {
         float by_worth = SPLIT_RATIO * worths[(uint32_t)(LOW_PERCENTILE * (float)useful)];
         float by_parts = l->split_above * (float)parts / (PARTS_PER_PATH * (float)count);
-        float least = l->round_count == last_round(l) - 1 ? l->split_above : l->split_above * SPLIT_STEP;
+        float least = l->round == last_round(l) - 1 ? l->split_above : l->split_above * SPLIT_STEP;
         l->split_above = fmaxf(fmaxf(by_worth, by_parts), least);
     }
     free(worths);
@@ -83,9 +85,9 @@ static ag_status trace_round(learner *l, uint32_t count)
 {
     trial_counts before = l->counts;
     emission_trial *trials = l->trials + l->count;
-    l->settings.guide = &l->guides[l->round_count];
-    l->settings.split_above = l->round_count > 0 ? l->split_above : 0.0f;
-    l->settings.ways = l->round_count > 0 ? l->ways : NULL;
+    l->settings.guide = &l->guides[l->round];
+    l->settings.split_above = l->round > 0 ? l->split_above : 0.0f;
+    l->settings.ways = l->round > 0 ? l->ways : NULL;
     l->settings.caustic_root = caustic_root(l);
     ag_status status = photon_tracing_try(l->s, l->run, &l->settings, l->count, count, trials, &l->counts);
     l->count += count;
@@ -121,9 +123,9 @@ static ag_status make_guide(learner *l, uint32_t round, const emission_starts *s
 {
     emission_guide *next = &l->guides[round];
     if (round > 1 || starts->count < STARTS_LEAST)
-        return emission_guide_create(l->trials, l->count, l->share, l->found, next);
+        return emission_guide_create(l->trials, l->count, l->share, l->starts_guide, next);
     AG_TRY(emission_guide_create(starts->trials, starts->count, l->share, NULL, next));
-    l->found = next;
+    l->starts_guide = next;
     return AG_OK;
 }
 
@@ -135,32 +137,41 @@ static double useful_share(const trial_counts *counts)
     return of_even > 0.0 ? counts->roots * counts->roots / of_even : 0.0;
 }
 
+/* Moves the last guide, and the one of the starts, which is borrowed by it, to the aim. */
+static void hand_over_guides(learner *l, emission_guide *last, photon_aim *out_aim)
+{
+    out_aim->guide = *last;
+    *last = (emission_guide){0};
+    if (!l->starts_guide)
+        return;
+    out_aim->starts_guide = l->guides[1];
+    out_aim->guide.other = &out_aim->starts_guide;
+    l->guides[1] = (emission_guide){0};
+}
+
+/* Traces rounds of trials, by power alone and then by what those before have told, and makes the last guide of them
+ * all, unless enough paths arrive without one. */
 static ag_status learn(learner *l, const emission_starts *starts, photon_aim *out_aim)
 {
     uint32_t counts[ROUNDS_MAX + 1] = {0};
     ag_status status = trace_round(l, l->round_trials / 2);
-    while (status == AG_OK && count_useful(l) < USEFUL_LEAST && l->count < BLIND_ROUNDS_MAX * l->round_trials)
-        status = trace_round(l, least_of(l->count, BLIND_ROUNDS_MAX * l->round_trials - l->count));
+    while (status == AG_OK && count_useful(l) < USEFUL_LEAST && l->count < UNGUIDED_ROUNDS_MAX * l->round_trials)
+        status = trace_round(l, least_of(l->count, UNGUIDED_ROUNDS_MAX * l->round_trials - l->count));
     counts[0] = l->count;
-    l->blind = l->counts;
-    if (useful_share(&l->blind) >= ENOUGH_USEFUL && (double)l->blind.asked >= ENOUGH_PER_PATH * (double)l->blind.paths)
+    l->unguided = l->counts;
+    if (useful_share(&l->unguided) >= ENOUGH_USEFUL &&
+        (double)l->unguided.asked >= ENOUGH_PER_PATH * (double)l->unguided.paths)
         return status;
     for (uint32_t round = 1; status == AG_OK; round++) {
         emission_guide *next = &l->guides[round];
         AG_TRY(make_guide(l, round, starts));
-        if (!next->nodes || (next != l->found && next->gain < LEAST_GAIN))
+        if (!next->nodes || (next != l->starts_guide && next->gain < LEAST_GAIN))
             return AG_OK;
         if (round == last_round(l)) {
-            out_aim->guide = *next;
-            *next = (emission_guide){0};
-            if (l->found) {
-                out_aim->found = l->guides[1];
-                out_aim->guide.other = &out_aim->found;
-                l->guides[1] = (emission_guide){0};
-            }
+            hand_over_guides(l, next, out_aim);
             return AG_OK;
         }
-        l->round_count = round;
+        l->round = round;
         counts[round] = l->round_trials;
         status = trace_round(l, l->round_trials);
         weigh_trials(l, counts, round + 1);
@@ -171,9 +182,11 @@ static ag_status learn(learner *l, const emission_starts *starts, photon_aim *ou
 /* The least that is worth an estimate, where power alone would store next to none. */
 enum { WANTED_LEAST = 20000 };
 
-static uint32_t fewer_by_power(const trial_counts *blind, uint32_t wanted)
+/* Returns how many photons to store with a guide: as many as are wanted, or as tracing by power alone would have stored
+ * before it gave up. */
+static uint32_t wanted_by_power(const trial_counts *unguided, uint32_t wanted)
 {
-    double stored = (double)blind->photons / (double)blind->paths * PHOTON_PATHS_MAX * wanted;
+    double stored = (double)unguided->photons / (double)unguided->paths * PHOTON_PATHS_MAX * wanted;
     double most = fmax(stored, WANTED_LEAST);
     return most < (double)wanted ? (uint32_t)most : wanted;
 }
@@ -193,11 +206,11 @@ ag_status photon_aim_learn(const scene *s, run_context *run, const photon_tracin
         return AG_OK;
     learner l = {.s = s, .run = run, .settings = *settings, .ways = settings->ways, .share = share};
     l.round_trials = photon_aim_round_trials(settings->wanted);
-    l.trials = malloc((size_t)(BLIND_ROUNDS_MAX + ROUNDS_MAX) * l.round_trials * sizeof *l.trials);
+    l.trials = malloc((size_t)(UNGUIDED_ROUNDS_MAX + ROUNDS_MAX) * l.round_trials * sizeof *l.trials);
     ag_status status = l.trials ? learn(&l, starts, out_aim) : AG_ERROR_MEMORY;
     out_aim->tried = l.counts;
     if (out_aim->guide.nodes) {
-        out_aim->wanted = fewer_by_power(&l.blind, settings->wanted);
+        out_aim->wanted = wanted_by_power(&l.unguided, settings->wanted);
         out_aim->stored_share = settings->paths == 0 ? l.stored_share : 1.0f;
         out_aim->split_above = l.split_above;
         out_aim->caustic_root = l.settings.caustic_root; /* from the last round, which has set what is split */
@@ -223,6 +236,6 @@ void photon_aim_apply(const photon_aim *aim, photon_tracing_settings *in_out_set
 void photon_aim_reset(photon_aim *aim)
 {
     emission_guide_reset(&aim->guide);
-    emission_guide_reset(&aim->found);
+    emission_guide_reset(&aim->starts_guide);
     *aim = (photon_aim){0};
 }

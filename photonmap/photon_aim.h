@@ -15,9 +15,9 @@ typedef struct emission_starts {
 } emission_starts;
 
 typedef struct photon_aim {
-    emission_guide guide; /* owned; empty: photons are emitted by power alone */
-    emission_guide found; /* owned: the guide that was built from the starts; `other` of guide */
-    uint32_t wanted;      /* photons to store, > 0 */
+    emission_guide guide;        /* owned; empty: photons are emitted by power alone */
+    emission_guide starts_guide; /* owned; built from the starts alone; `other` of guide where there were enough */
+    uint32_t wanted;             /* photons to store, > 0 */
     /* As in photon_tracing_settings; without a guide 1, 0 and 0. */
     float stored_share, split_above, caustic_root;
     trial_counts tried; /* sums over all trials */

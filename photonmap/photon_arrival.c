@@ -40,9 +40,9 @@ void photon_arrival_scatter_in_medium(const scene *s, const photon_arrival *at, 
     ray->direction = phase_function_sample(&s->media[ray->medium].phase, at->arrived, u);
 }
 
-/* Returns the share of a map's ways on that importons lead: of those by diffuse lobes; of a caustic map's all, where
- * any of its lobes is rough. */
-static float led_share(const photon_arrival *at, photon_kind kind)
+/* Returns the share of the directions on that importons guide: of the global map a share of those by diffuse lobes; of
+ * a caustic map a share of all, where any lobe is rough. */
+static float find_guided_share(const photon_arrival *at, photon_kind kind)
 {
     if (kind == PHOTON_CAUSTIC)
         return photon_arrival_is_rough(at) ? CAUSTIC_GUIDED_SHARE : 0.0f;
@@ -52,17 +52,17 @@ static float led_share(const photon_arrival *at, photon_kind kind)
 void photon_arrival_complete(const scene *s, const photon_tracing_settings *settings, photon_arrival *at)
 {
     vec3 back = vec3_negate(at->arrived);
-    at->led_share = 0.0f;
+    at->guided_share = 0.0f;
     at->albedo = lambert_albedo(s, &at->hit);
     if (!at->albedo)
         bsdf_init(s, &at->hit, back, &at->scattering);
-    float share = settings->ways ? led_share(at, settings->kind) : 0.0f;
+    float share = settings->ways ? find_guided_share(at, settings->kind) : 0.0f;
     if (!(share > 0.0f) || !onward_ways_find(settings->ways, photon_arrival_rest(s, at).position,
-                                             vec3_face_forward(at->hit.geometric_normal, back), &at->lead))
+                                             vec3_face_forward(at->hit.geometric_normal, back), &at->onward))
         return;
     /* histograms are too coarse for what rough metal or a coat reflects */
-    if (settings->kind == PHOTON_GLOBAL || at->lead.cone_count > 0)
-        at->led_share = share;
+    if (settings->kind == PHOTON_GLOBAL || at->onward.cone_count > 0)
+        at->guided_share = share;
 }
 
 bool photon_arrival_stores(const scene *s, const photon_arrival *at, float *out_factor)
@@ -110,21 +110,21 @@ static void evaluate_surface(const photon_arrival *at, bsdf_lobes lobes, vec3 di
 }
 
 bool photon_arrival_sample(const photon_arrival *at, bsdf_lobes lobes, float u_lobe, vec2 u, bsdf_sample *out_next,
-                           float *out_led)
+                           float *out_density_ratio)
 {
-    float share = at->led_share;
-    *out_led = 1.0f;
+    float share = at->guided_share;
+    *out_density_ratio = 1.0f;
     if (!(share > 0.0f))
         return sample_surface(at, lobes, u_lobe, u, out_next);
     if (u_lobe < share) {
-        evaluate_surface(at, lobes, onward_lead_sample(&at->lead, u), out_next);
+        evaluate_surface(at, lobes, onward_guide_sample(&at->onward, u), out_next);
     } else {
         u_lobe = float_below_one((u_lobe - share) / (1.0f - share));
         if (!sample_surface(at, lobes, u_lobe, u, out_next))
             return false;
     }
-    float by_lead = out_next->is_delta ? 0.0f : onward_lead_density(&at->lead, out_next->direction);
+    float by_importons = out_next->is_delta ? 0.0f : onward_guide_density(&at->onward, out_next->direction);
     float by_surface = out_next->is_delta ? 1.0f : out_next->pdf_solid_angle;
-    *out_led = by_surface > 0.0f ? by_surface / ((1.0f - share) * by_surface + share * by_lead) : 0.0f;
+    *out_density_ratio = by_surface > 0.0f ? by_surface / ((1.0f - share) * by_surface + share * by_importons) : 0.0f;
     return true;
 }

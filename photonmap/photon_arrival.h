@@ -17,8 +17,8 @@ typedef struct photon_arrival {
     vec3 arrived;      /* unit direction of the flux */
     const rgb *albedo; /* of a plain Lambertian surface (lambert.h); else NULL, and: */
     bsdf scattering;
-    float led_share;  /* of the ways on, that follow: */
-    onward_lead lead; /* what importons tell, where led_share > 0 */
+    float guided_share;  /* of the directions in which flux goes on: those sampled by onward; 0: none */
+    onward_guide onward; /* by importons; set where guided_share > 0 */
 } photon_arrival;
 
 /* Follows a ray to the next surface that is not passed straight, and sets the hit. Moves the ray's medium and cone
@@ -81,10 +81,10 @@ static inline float photon_arrival_gain(const photon_arrival *at)
 }
 
 /* Samples the direction in which flux goes on: by the surface, or by the importons there. The weight is that of
- * sampling by the surface alone; *out_led is the ratio of that density to the mixture's, bounded by what the share of
- * importons leaves to the surface; 0: the direction carries nothing. Returns false where the flux is absorbed. */
+ * sampling by the surface alone; *out_density_ratio: the density of sampling so over that of both ways together, at
+ * most 1 / (1 - guided_share); 0: the direction carries nothing. Returns false where the flux is absorbed. */
 bool photon_arrival_sample(const photon_arrival *at, bsdf_lobes lobes, float u_lobe, vec2 u, bsdf_sample *out_next,
-                           float *out_led);
+                           float *out_density_ratio);
 
 /* Returns the ray that leaves in a direction. ray: the one that arrived. */
 static inline scene_ray photon_arrival_ray(const photon_arrival *at, const scene_ray *ray, vec3 direction)

@@ -24,9 +24,9 @@ typedef struct photon_path {
     scene_ray ray;
     rgb flux;
     rng random;
-    uint64_t key;
-    float weight;    /* density of such paths by power alone, over their density with guide and splitting */
-    float share;     /* the fraction of the path from the lamp that this part is */
+    uint64_t key;        /* of the path's number: photons' keys are made of it */
+    float density_ratio; /* of such paths: their density by power alone, over that with guides and splitting */
+    float share;         /* the fraction of the path from the lamp that this part is */
     int scatterings; /* that max_scatterings bounds: by surfaces, but for panes, where they are direct; and by media */
     int in_media;    /* by media, counted on their own */
     int arrivals;    /* at surfaces, panes too */
@@ -60,7 +60,7 @@ static bool reserve_photon(path_block *out)
  * than by power are stored as rarely as if they had not been. */
 static float keep_probability(const photon_path *path, float importance)
 {
-    return importance > 0.0f || !(path->weight < 1.0f) ? 1.0f : path->weight;
+    return importance > 0.0f || !(path->density_ratio < 1.0f) ? 1.0f : path->density_ratio;
 }
 
 /* Decides whether a photon is stored, and makes up for those that are not by its flux. */
@@ -178,7 +178,6 @@ static bool begin_path(photon_tracer *t, uint64_t number, photon_path *out_path)
     light_emission start;
     if (!(probability > 0.0f) || !light_emit(s, lamp, t->target, &numbers, &random, &start))
         return false;
-    float weight = 1.0f / density;
     scene_ray ray = scene_ray_make(start.origin, start.direction);
     ray.skips_uv = true;
     ray.slabs_are_panes = settings->panes_are_direct;
@@ -186,8 +185,10 @@ static bool begin_path(photon_tracer *t, uint64_t number, photon_path *out_path)
     ray.time = time;
     if (settings->filters_textures)
         ray.cone = (ray_cone){photon_width(s, settings), 0.0f, true};
-    rgb flux = rgb_scale(start.flux, (t->trial ? 1.0f : weight) / probability);
-    *out_path = (photon_path){ray, flux, random, key, weight, 1.0f, 0, 0, 0, false};
+    float density_ratio = 1.0f / density;
+    rgb flux = rgb_scale(start.flux, (t->trial ? 1.0f : density_ratio) / probability);
+    *out_path = (photon_path){
+        .ray = ray, .flux = flux, .random = random, .key = key, .density_ratio = density_ratio, .share = 1.0f};
     count_flux(t->out->balance.emitted, out_path->flux);
     return true;
 }
@@ -214,8 +215,8 @@ static bool scatter(photon_tracer *t, photon_path *path, const photon_arrival *a
     float u_lobe = rng_float(&path->random), u_roulette = rng_float(&path->random);
     vec2 u = rng_vec2(&path->random);
     bsdf_sample next;
-    float led;
-    if (!photon_arrival_sample(at, lobes, u_lobe, u, &next, &led)) {
+    float density_ratio;
+    if (!photon_arrival_sample(at, lobes, u_lobe, u, &next, &density_ratio)) {
         count_flux(balance->absorbed, flux);
         return false;
     }
@@ -234,10 +235,10 @@ static bool scatter(photon_tracer *t, photon_path *path, const photon_arrival *a
         count_flux(balance->lost, scattered);
         return false;
     }
-    path->weight *= led;
-    path->flux = rgb_scale(scattered, led / survival);
+    path->density_ratio *= density_ratio;
+    path->flux = rgb_scale(scattered, density_ratio / survival);
     count_flux(balance->gained, rgb_sub(path->flux, scattered));
-    if (!(led > 0.0f))
+    if (!(density_ratio > 0.0f))
         return false;
     path->ray = goes_straight ? photon_arrival_ray_straight(at, &path->ray)
                               : photon_arrival_ray(at, &path->ray, next.direction);
@@ -261,8 +262,8 @@ static float root_of_onward_importance(const photon_tracer *t, const photon_arri
         return 0.0f;
     surface_rest rest = photon_arrival_rest(t->s, at);
     float importance = importance_map_at(settings->onward, rest.position, rest.geometric_normal);
-    if (at->led_share > 0.0f)
-        importance /= fmaxf(at->led_share * onward_lead_gain(&at->lead), 1.0f);
+    if (at->guided_share > 0.0f)
+        importance /= fmaxf(at->guided_share * onward_guide_gain(&at->onward), 1.0f);
     return sqrtf(importance);
 }
 
@@ -293,7 +294,7 @@ static photon_path part_of_path(const photon_path *path, uint32_t part, uint32_t
     uint64_t number = (uint64_t)path->arrivals << 32 | part;
     float share = 1.0f / (float)parts;
     out.flux = rgb_scale(path->flux, share);
-    out.weight *= share;
+    out.density_ratio *= share;
     out.share *= share;
     out.key = hash_combine(path->key, number);
     out.random.state = hash_combine(path->random.state, number);

@@ -37,7 +37,7 @@ static void trace_block(void *user, uint64_t begin, uint64_t end, uint64_t block
     /* a copy, since each photon changes the balance, and that of the next block, which another worker changes, may lie
      * on the same line of the cache */
     path_block out = job->blocks[block_index];
-    photon_tracer t = {job->s, job->target, job->settings, &out, UINT32_MAX, NULL, NULL};
+    photon_tracer t = {.s = job->s, .target = job->target, .settings = job->settings, .out = &out, .limit = UINT32_MAX};
     for (uint64_t i = begin; i < end && !run_is_cancelled(job->run); i++)
         photon_path_trace(&t, job->first_path + i);
     out.paths = end - begin;
@@ -64,7 +64,7 @@ static ag_status account_block(round_job *job, photon_set *set, uint64_t first_p
         return AG_CANCELLED;
     if (b->count >= room) {
         *b = (path_block){.photons = b->photons, .capacity = b->capacity};
-        photon_tracer t = {job->s, job->target, job->settings, b, room, NULL, NULL};
+        photon_tracer t = {.s = job->s, .target = job->target, .settings = job->settings, .out = b, .limit = room};
         while (b->count < room)
             photon_path_trace(&t, first_path + b->paths++);
     }
@@ -116,7 +116,7 @@ static ag_status find_traced_surfaces(const scene *s, light_target *out_target)
     return AG_OK;
 }
 
-static void explain_shortage(run_context *run, const photon_tracing_settings *settings, const photon_set *set)
+static void warn_of_shortage(run_context *run, const photon_tracing_settings *settings, const photon_set *set)
 {
     const energy_balance *b = &set->balance;
     double emitted = b->emitted[0] + b->emitted[1] + b->emitted[2];
@@ -124,8 +124,7 @@ static void explain_shortage(run_context *run, const photon_tracing_settings *se
     /* few caustics are no reason to warn: most scenes that have mirrors or glass are like that */
     log_message(run->log, settings->kind == PHOTON_GLOBAL ? AG_LOG_WARNING : AG_LOG_INFO,
                 "%s photon map: %u of %u photons stored after %llu paths, of which too few meet a diffuse surface%s "
-                "(%.1f %% of "
-                "the emitted light leaves the scene): the light is right, its detail coarser",
+                "(%.1f %% of the emitted light leaves the scene): the light is right, its detail coarser",
                 settings->kind == PHOTON_GLOBAL ? "global" : "caustic", set->count, settings->wanted,
                 (unsigned long long)set->emitted_paths,
                 settings->kind == PHOTON_GLOBAL ? "" : " by way of a specular one",
@@ -149,7 +148,7 @@ static ag_status find_target(const scene *s, photon_kind kind, light_target *out
 }
 
 /* Warns that the map was full before all requested paths had been emitted. */
-static void tell_of_full_map(run_context *run, const photon_tracing_settings *settings, const photon_set *set)
+static void warn_of_full_map(run_context *run, const photon_tracing_settings *settings, const photon_set *set)
 {
     log_message(run->log, AG_LOG_WARNING,
                 "the photon map was full after %llu of %llu paths: photons will change from frame to frame (more "
@@ -176,7 +175,8 @@ static uint64_t paths_of_round(const photon_tracing_settings *settings, uint64_t
     return left < paths ? left : paths;
 }
 
-/* Returns whether paths have stored so few photons that there is no point in going on. */
+/* Returns whether paths have stored so few photons that there is no point in going on. A fixed number of paths is
+ * traced to its end unless none has stored any. */
 static bool is_hopeless(const photon_tracing_settings *settings, const photon_set *set)
 {
     bool takes_too_many = settings->paths == 0 && set->emitted_paths / PHOTON_PATHS_MAX >= settings->wanted;
@@ -216,7 +216,7 @@ static ag_status trace_rounds(const scene *s, run_context *run, const photon_tra
             blocks[i] = (path_block){.photons = blocks[i].photons, .capacity = blocks[i].capacity};
         next_path += paths;
         if (set->count < settings->wanted && is_hopeless(settings, set)) {
-            explain_shortage(run, settings, set);
+            warn_of_shortage(run, settings, set);
             break;
         }
         block_count = next_block_count(set, settings->wanted, block_count);
@@ -249,7 +249,7 @@ ag_status photon_tracing_run(const scene *s, run_context *run, const photon_trac
         return status;
     }
     if (set.count == settings->wanted && set.emitted_paths < settings->paths)
-        tell_of_full_map(run, settings, &set);
+        warn_of_full_map(run, settings, &set);
     divide_balance(&set.balance, set.emitted_paths);
     *out_set = set;
     return AG_OK;
@@ -282,7 +282,12 @@ static void try_block(void *user, uint64_t begin, uint64_t end, uint64_t block_i
     path_block out = {0};
     trial_counts counts = {0};
     for (uint64_t i = begin; i < end && !run_is_cancelled(job->run); i++) {
-        photon_tracer t = {job->s, job->target, job->settings, &out, 0, &job->trials[i], &counts};
+        photon_tracer t = {.s = job->s,
+                           .target = job->target,
+                           .settings = job->settings,
+                           .out = &out,
+                           .trial = &job->trials[i],
+                           .counts = &counts};
         photon_path_trace(&t, job->first_path + i);
     }
     counts.paths = end - begin;

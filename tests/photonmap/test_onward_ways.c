@@ -47,10 +47,10 @@ static void windows_are_found(void **state)
             assert_true(ways.openings[k].radius > WINDOW_RADIUS && ways.openings[k].radius < 2.0f * WINDOW_RADIUS);
         for (int k = 0; k < 100; k++) {
             vec3 at = {between(&random, 10.0f, 40.0f), 0.0f, between(&random, -20.0f, 20.0f)};
-            onward_lead lead;
-            assert_true(onward_ways_find(&ways, at, UP, &lead));
-            assert_true(lead.cone_count > 0);
-            float off = vec3_length(vec3_cross(vec3_sub(WINDOW, at), lead.towards.z));
+            onward_guide guide;
+            assert_true(onward_ways_find(&ways, at, UP, &guide));
+            assert_true(guide.cone_count > 0);
+            float off = vec3_length(vec3_cross(vec3_sub(WINDOW, at), guide.towards.z));
             assert_true(off < 0.7f * WINDOW_RADIUS);
         }
         onward_ways_reset(&ways);
@@ -64,32 +64,32 @@ static void no_window_is_found_where_there_is_none(void **state)
     (void)state;
     test_run r;
     onward_ways ways;
-    onward_lead lead;
+    onward_guide guide;
     rng random = test_random(4);
     test_run_init(&r, 2);
     make_ways(&r, 10.0f, 40.0f, 1.0f, &ways);
     for (int i = 0; i < 100; i++) {
         vec3 at = {between(&random, 10.0f, 40.0f), 0.0f, between(&random, -5.0f, 5.0f)};
-        assert_true(onward_ways_find(&ways, at, UP, &lead));
-        assert_int_equal(lead.cone_count, 0);
-        assert_true(onward_lead_gain(&lead) == 1.0f);
+        assert_true(onward_ways_find(&ways, at, UP, &guide));
+        assert_int_equal(guide.cone_count, 0);
+        assert_true(onward_guide_gain(&guide) == 1.0f);
     }
-    assert_false(onward_ways_find(&ways, (vec3){20.0f, 0.0f, 0.0f}, vec3_negate(UP), &lead));
+    assert_false(onward_ways_find(&ways, (vec3){20.0f, 0.0f, 0.0f}, vec3_negate(UP), &guide));
     onward_ways_reset(&ways);
     test_run_reset(&r);
 }
 
 /* The mean over drawn directions of another density over this one is what of the other lies where this one draws: here
  * of the even density over the half sphere about the window, in bands around its direction. */
-static void expect_density(const onward_lead *lead, vec3 axis)
+static void expect_density(const onward_guide *guide, vec3 axis)
 {
     enum { BANDS = 12 };
     double sums[BANDS] = {0.0}, squares[BANDS] = {0.0};
-    const double widest = lead->cone_count > 0 ? (double)lead->one_minus_cos[lead->cone_count - 1] : 1.0;
+    const double widest = guide->cone_count > 0 ? (double)guide->one_minus_cos[guide->cone_count - 1] : 1.0;
     rng random = test_random(5);
     for (int i = 0; i < DIRECTIONS; i++) {
-        vec3 d = onward_lead_sample(lead, rng_vec2(&random));
-        double density = (double)onward_lead_density(lead, d), off = 1.0 - (double)vec3_dot(d, axis);
+        vec3 d = onward_guide_sample(guide, rng_vec2(&random));
+        double density = (double)onward_guide_density(guide, d), off = 1.0 - (double)vec3_dot(d, axis);
         assert_true(density > 0.0);
         assert_close(vec3_length(d), 1.0, 1e-6);
         int band = (int)floor(log2(fmax(off, 1e-9) / widest)) + BANDS;
@@ -114,18 +114,18 @@ static void densities_are_those_of_what_is_drawn(void **state)
     (void)state;
     test_run r;
     onward_ways ways;
-    onward_lead lead;
+    onward_guide guide;
     test_run_init(&r, 2);
     make_ways(&r, 10.0f, 40.0f, 0.0f, &ways);
-    assert_true(onward_ways_find(&ways, (vec3){30.0f, 0.0f, 2.0f}, UP, &lead));
-    assert_true(lead.cone_count >= 3);
-    assert_true(onward_lead_gain(&lead) > 1000.0f);
-    expect_density(&lead, lead.towards.z);
+    assert_true(onward_ways_find(&ways, (vec3){30.0f, 0.0f, 2.0f}, UP, &guide));
+    assert_true(guide.cone_count >= 3);
+    assert_true(onward_guide_gain(&guide) > 1000.0f);
+    expect_density(&guide, guide.towards.z);
     onward_ways_reset(&ways);
     make_ways(&r, 0.5f, 2.0f, 0.0f, &ways);
-    assert_true(onward_ways_find(&ways, (vec3){1.0f, 0.0f, 0.1f}, UP, &lead));
-    assert_int_equal(lead.cone_count, 0);
-    expect_density(&lead, UP);
+    assert_true(onward_ways_find(&ways, (vec3){1.0f, 0.0f, 0.1f}, UP, &guide));
+    assert_int_equal(guide.cone_count, 0);
+    expect_density(&guide, UP);
     onward_ways_reset(&ways);
     test_run_reset(&r);
 }
@@ -140,7 +140,7 @@ static void odd_importons_do_no_harm(void **state)
         photon *importons = photon_records_create(IMPORTONS);
         rng random = test_random(6);
         onward_ways ways;
-        onward_lead lead;
+        onward_guide guide;
         assert_non_null(importons);
         for (int i = 0; i < IMPORTONS; i++) {
             float x = is_one_point ? 0.0f : between(&random, -1.0f, 1.0f);
@@ -150,17 +150,17 @@ static void odd_importons_do_no_harm(void **state)
                                     .normal = direction_encode(UP)};
         }
         assert_int_equal(onward_ways_create(&r.run, importons, IMPORTONS, &ways), AG_OK);
-        if (onward_ways_find(&ways, (vec3){0.1f, 0.0f, 0.05f}, UP, &lead)) {
-            vec3 d = onward_lead_sample(&lead, (vec2){0.3f, 0.7f});
+        if (onward_ways_find(&ways, (vec3){0.1f, 0.0f, 0.05f}, UP, &guide)) {
+            vec3 d = onward_guide_sample(&guide, (vec2){0.3f, 0.7f});
             assert_close(vec3_length(d), 1.0, 1e-6);
-            assert_true(onward_lead_density(&lead, d) > 0.0f);
+            assert_true(onward_guide_density(&guide, d) > 0.0f);
         }
         onward_ways_reset(&ways);
     }
     onward_ways none;
-    onward_lead lead;
+    onward_guide guide;
     assert_int_equal(onward_ways_create(&r.run, photon_records_create(0), 0, &none), AG_OK);
-    assert_false(onward_ways_find(&none, UP, UP, &lead));
+    assert_false(onward_ways_find(&none, UP, UP, &guide));
     onward_ways_reset(&none);
     test_run_reset(&r);
 }

@@ -163,7 +163,7 @@ typedef struct spread {
 } spread;
 
 /* How a pilot helps photons beside the guide that trials teach. */
-typedef enum pilot_help { HELP_NONE, HELP_SPLIT, HELP_SPLIT_AND_LEAD } pilot_help;
+typedef enum pilot_help { HELP_NONE, HELP_SPLIT, HELP_SPLIT_AND_GUIDE } pilot_help;
 
 /* How the flux of a map's photons inside of ROOM is spread. */
 static spread spread_inside(test_run *r, const scene *s, eye_pilot *pilot, pilot_help help)
@@ -176,11 +176,11 @@ static spread spread_inside(test_run *r, const scene *s, eye_pilot *pilot, pilot
                                             .seed = (uint64_t)seed,
                                             .asked = &pilot->gathered,
                                             .onward = help != HELP_NONE ? &pilot->onward : NULL,
-                                            .ways = help == HELP_SPLIT_AND_LEAD ? &pilot->ways : NULL};
+                                            .ways = help == HELP_SPLIT_AND_GUIDE ? &pilot->ways : NULL};
         photon_aim aim;
         photon_set set;
         double inside = 0.0, most = 0.0;
-        const emission_starts none = {0}, *starts = help == HELP_SPLIT_AND_LEAD ? &pilot->starts : &none;
+        const emission_starts none = {0}, *starts = help == HELP_SPLIT_AND_GUIDE ? &pilot->starts : &none;
         assert_int_equal(photon_aim_learn(s, &r->run, &settings, starts, 0.8f, &aim), AG_OK);
         photon_aim_apply(&aim, &settings);
         assert_int_equal(photon_tracing_run(s, &r->run, &settings, &set), AG_OK);
@@ -213,14 +213,15 @@ static void bright_paths_are_split_and_led(void **state)
     scene *s = scene_of(&r, "LightSource \"infinite\" \"rgb L\" [1 1 1]\n" ROOM);
     eye_pilot pilot = look_at(&r, s, 32);
     spread whole = spread_inside(&r, s, &pilot, HELP_NONE), split = spread_inside(&r, s, &pilot, HELP_SPLIT);
-    spread led = spread_inside(&r, s, &pilot, HELP_SPLIT_AND_LEAD);
-    print_message("flux inside: %.4f, deviation %.4f, brightest %.4f; split %.4f, %.4f, %.4f; led %.4f, %.4f, %.4f\n",
-                  whole.mean, whole.deviation, whole.brightest, split.mean, split.deviation, split.brightest, led.mean,
-                  led.deviation, led.brightest);
+    spread guided = spread_inside(&r, s, &pilot, HELP_SPLIT_AND_GUIDE);
+    print_message(
+        "flux inside: %.4f, deviation %.4f, brightest %.4f; split %.4f, %.4f, %.4f; guided %.4f, %.4f, %.4f\n",
+        whole.mean, whole.deviation, whole.brightest, split.mean, split.deviation, split.brightest, guided.mean,
+        guided.deviation, guided.brightest);
     assert_close(split.mean, whole.mean, 3.0 * hypot(whole.deviation, split.deviation) / sqrt(SEEDS));
-    assert_close(led.mean, split.mean, 4.0 * hypot(led.deviation, split.deviation) / sqrt(SEEDS));
+    assert_close(guided.mean, split.mean, 4.0 * hypot(guided.deviation, split.deviation) / sqrt(SEEDS));
     assert_true(FEWER > 1 || split.brightest < 0.6 * whole.brightest);
-    assert_true(FEWER > 1 || led.deviation < 0.9 * split.deviation);
+    assert_true(FEWER > 1 || guided.deviation < 0.9 * split.deviation);
     eye_pilot_reset(&pilot);
     scene_destroy(s);
     test_run_reset(&r);
