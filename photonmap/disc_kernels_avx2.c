@@ -448,7 +448,7 @@ AVX2 static uint32_t sum_in_region(const photon_disc *disc, const surface_region
                                    photon_disc_sums *out_sums)
 {
     const float *lines = region->line[0];
-    const __m256i octants = _mm256_slli_epi32(load(SURFACE_REGION_OCTANT), 1);
+    const __m256i octants = _mm256_slli_epi32(load(SURFACE_REGION_OCTANT_BY_SIGNS), 1);
     const __m256 line[2] = {_mm256_i32gather_ps(lines, octants, 4), _mm256_i32gather_ps(lines + 1, octants, 4)};
     const __m256 scale = offset_scale(disc);
     const uint32_t entries = f->leaf_count * PHOTON_BLOCK_LANES;

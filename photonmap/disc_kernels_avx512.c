@@ -377,7 +377,7 @@ AVX512 static uint32_t sum_in_region(const photon_disc *disc, const surface_regi
     _Alignas(64) float lines[2][WIDTH] = {{0.0f}};
     for (int a = 0; a < 2; a++)
         for (int i = 0; i < 8; i++)
-            lines[a][i] = region->line[SURFACE_REGION_OCTANT[i]][a];
+            lines[a][i] = region->line[SURFACE_REGION_OCTANT_BY_SIGNS[i]][a];
     const __m512 line[2] = {_mm512_load_ps(lines[0]), _mm512_load_ps(lines[1])};
     const __m512 scale = offset_scale(disc), limit = _mm512_set1_ps(f->limit);
     const vec3_16 at = fill(disc->position);

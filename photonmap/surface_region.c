@@ -22,9 +22,10 @@ enum { BISECTIONS = 7, BISECTIONS_MOST = 12, FOOT_TRIALS = 3 };
 /* A surface that falls by less than this share of the way is taken as flat: its area is right within 0.04 %. The plane
  * that bounds a clear space is level if the cosine between the normals is above FLAT_COS. */
 static const float FLAT_SLOPE = 0.02f, FLAT_COS = 0.9999f;
-/* Normals are alike up to 60 degrees, and the tangent of half of it is this; a bend that runs across the tangent is
- * told no better than by this cosine. */
-static const float HALF_MOST = 0.57735f, ALONG_LEAST = 0.25f;
+/* The largest tangent of half the angle by which a surface bends: normals are alike up to 60 degrees. */
+static const float HALF_BEND_MOST = 0.57735f;
+/* The drop tells nothing of a bend across the tangent: the cosine between the two counts as no less than this. */
+static const float ALONG_LEAST = 0.25f;
 /* Lateral distances are no shorter than this share of the radius. */
 static const float SHORTEST = 0x1p-10f;
 
@@ -44,6 +45,17 @@ typedef struct probe {
     uint64_t *rays; /* counts them */
 } probe;
 
+/* The probe of a point above which rays have yet to begin: see find_foot. */
+static probe probe_make(const scene *s, const clear_space *space, float min_cos, float radius, uint64_t *in_out_rays)
+{
+    return (probe){.s = s,
+                   .space = space,
+                   .radius = radius,
+                   .min_cos = min_cos,
+                   .alpha_rule = RAY_MEETS_ALPHA,
+                   .rays = in_out_rays};
+}
+
 static bool find_surface(const probe *p, vec3 origin, vec3 direction, float farthest, surface_hit *out_hit)
 {
     scene_ray ray = scene_ray_make(origin, direction);
@@ -52,7 +64,7 @@ static bool find_surface(const probe *p, vec3 origin, vec3 direction, float fart
     return scene_find_surface(p->s, ray, farthest, out_hit);
 }
 
-/* A picture cuts holes into it, which no photon falls on. */
+/* Returns whether an alpha texture may cut holes into the surface, on which no photon falls. */
 static bool has_holes(const scene *s, const surface_hit *hit)
 {
     return s->shapes[hit->shape_index].alpha_texture != SCENE_NO_TEXTURE;
@@ -137,7 +149,7 @@ static vec3 find_bend(const probe *p, vec3 tangent, float lateral, const below *
         return flat;
     /* the drop is along the tangent, the bend along the tilt */
     float along = fmaxf(fabsf(vec3_dot(tilt, tangent)) / length, ALONG_LEAST);
-    float half = fminf(fabsf(slope) / along, HALF_MOST), sine = 2.0f * half / (1.0f + half * half);
+    float half = fminf(fabsf(slope) / along, HALF_BEND_MOST), sine = 2.0f * half / (1.0f + half * half);
     return vec3_scale(tilt, sine / (length * lateral));
 }
 
@@ -177,7 +189,7 @@ static float find_extent(const probe *p, vec3 tangent, vec3 *out_bend)
 /* The line with line . p = 1 at both the ends of two neighbouring directions. */
 static void line_through(const float *extent, int first, float *out_line)
 {
-    int second = (first + 1) % SURFACE_REGION_SECTORS;
+    int second = (first + 1) % SURFACE_REGION_OCTANTS;
     float ax = SURFACE_REGION_BOUND[first][0] * extent[first], ay = SURFACE_REGION_BOUND[first][1] * extent[first];
     float bx = SURFACE_REGION_BOUND[second][0] * extent[second], by = SURFACE_REGION_BOUND[second][1] * extent[second];
     float inverse = 1.0f / (ax * by - ay * bx);
@@ -188,9 +200,9 @@ static void line_through(const float *extent, int first, float *out_line)
 /* Between two ends the chord: straight walls and edges are met exactly. Where an edge runs out of the disc between two
  * directions it goes on straight; where that is not known, a chord to the rim leaves some surface out, but takes in
  * none that is not there. */
-static void bound_sector(const float *extent, float radius, int i, float *out_line)
+static void bound_octant(const float *extent, float radius, int i, float *out_line)
 {
-    enum { COUNT = SURFACE_REGION_SECTORS };
+    enum { COUNT = SURFACE_REGION_OCTANTS };
     int next = (i + 1) % COUNT, before = (i + COUNT - 1) % COUNT, after = (i + 2) % COUNT;
     bool is_open = extent[i] >= radius, next_is_open = extent[next] >= radius;
     out_line[0] = out_line[1] = 0.0f;
@@ -252,11 +264,13 @@ static float share_that_is_there(const probe *p, const surface_region *r)
 bool surface_region_reaches_rim(const scene *s, const clear_space *space, vec3 position, vec3 normal, float min_cos,
                                 float radius, uint64_t *in_out_rays)
 {
-    float lift = LIFT * radius;
-    vec3 above = vec3_add_scaled(position, normal, lift), x, y;
-    probe p = {s, space, above, normal, lift, radius, min_cos, false, RAY_MEETS_ALPHA, in_out_rays};
+    vec3 x, y;
+    probe p = probe_make(s, space, min_cos, radius, in_out_rays);
+    p.normal = normal;
+    p.lift = LIFT * radius;
+    p.above = vec3_add_scaled(position, normal, p.lift);
     find_tangents(position, normal, &x, &y);
-    for (int i = 0; i < SURFACE_REGION_SECTORS; i += 2) {
+    for (int i = 0; i < SURFACE_REGION_OCTANTS; i += 2) {
         below found;
         vec3 tangent = vec3_add_scaled(vec3_scale(x, SURFACE_REGION_BOUND[i][0]), y, SURFACE_REGION_BOUND[i][1]);
         if (!find_below(&p, tangent, PROBE_AT * radius, &found) || found.has_holes)
@@ -274,11 +288,11 @@ bool surface_region_is_whole(const scene *s, const clear_space *space, vec3 posi
 /* Finds the region in the frame x, y. Returns false where the surface has neither an end nor a hole. */
 static bool fill_region(probe *p, bool may_be_empty, surface_region *r)
 {
-    float extent[SURFACE_REGION_SECTORS];
+    float extent[SURFACE_REGION_OCTANTS];
     if (may_be_empty)
         p->alpha_rule = RAY_MEETS_EMPTY_ALPHA; /* holes are no ends: there may be one in every direction */
     r->nearest_end = p->radius;
-    for (int i = 0; i < SURFACE_REGION_SECTORS; i++) {
+    for (int i = 0; i < SURFACE_REGION_OCTANTS; i++) {
         vec3 bend;
         extent[i] = find_extent(
             p, vec3_add_scaled(vec3_scale(r->x, SURFACE_REGION_BOUND[i][0]), r->y, SURFACE_REGION_BOUND[i][1]), &bend);
@@ -289,8 +303,8 @@ static bool fill_region(probe *p, bool may_be_empty, surface_region *r)
     }
     if (r->nearest_end >= p->radius && !may_be_empty)
         return false;
-    for (int i = 0; i < SURFACE_REGION_SECTORS; i++)
-        bound_sector(extent, p->radius, i, r->line[i]);
+    for (int i = 0; i < SURFACE_REGION_OCTANTS; i++)
+        bound_octant(extent, p->radius, i, r->line[i]);
     r->share = may_be_empty ? share_that_is_there(p, r) : 1.0f;
     return r->nearest_end < p->radius || r->share < 1.0f;
 }
@@ -298,7 +312,7 @@ static bool fill_region(probe *p, bool may_be_empty, surface_region *r)
 bool surface_region_find(const scene *s, const clear_space *space, vec3 position, vec3 normal, float min_cos,
                          float radius, uint64_t *in_out_rays, surface_region *out_region)
 {
-    probe p = {s, space, position, normal, 0.0f, radius, min_cos, false, RAY_MEETS_ALPHA, in_out_rays};
+    probe p = probe_make(s, space, min_cos, radius, in_out_rays);
     surface_hit foot;
     if (!find_foot(&p, position, normal, &foot))
         return false;
@@ -311,7 +325,7 @@ bool surface_region_find(const scene *s, const clear_space *space, vec3 position
 static void turn_along_edge(surface_region *r)
 {
     float largest = 0.0f, along[2] = {1.0f, 0.0f};
-    for (int i = 0; i < SURFACE_REGION_SECTORS; i++) {
+    for (int i = 0; i < SURFACE_REGION_OCTANTS; i++) {
         float a = r->line[i][0], b = r->line[i][1], square = a * a + b * b;
         if (square > largest) {
             float inverse = 1.0f / sqrtf(square);
@@ -328,8 +342,9 @@ static void turn_along_edge(surface_region *r)
 void surface_region_follow_strip(const scene *s, const clear_space *space, vec3 normal, float min_cos, float radius,
                                  uint64_t *in_out_rays, surface_region *in_out_region)
 {
-    probe p = {s, space, in_out_region->center, normal, 0.0f, radius, min_cos, true, RAY_MEETS_ALPHA, in_out_rays};
+    probe p = probe_make(s, space, min_cos, radius, in_out_rays);
     surface_hit foot;
+    p.is_fine = true;
     if (!find_foot(&p, in_out_region->center, normal, &foot))
         return;
     surface_region turned = *in_out_region;
@@ -343,6 +358,7 @@ bool surface_region_contains(const surface_region *region, vec3 position)
 {
     vec3 offset = vec3_sub(position, region->center);
     float x = vec3_dot(offset, region->x), y = vec3_dot(offset, region->y);
-    const float *line = region->line[SURFACE_REGION_OCTANT[(y < 0.0f) * 4 + (x < 0.0f) * 2 + (fabsf(y) > fabsf(x))]];
+    const float *line =
+        region->line[SURFACE_REGION_OCTANT_BY_SIGNS[(y < 0.0f) * 4 + (x < 0.0f) * 2 + (fabsf(y) > fabsf(x))]];
     return line[0] * x + line[1] * y <= 1.0f;
 }

@@ -3,34 +3,34 @@
  * reaches through a wall finds the next room's. A few short rays along the surface, and down onto it, tell how far it
  * goes each way; photons and area are then counted inside that region alone, so the estimate is right wherever the
  * region is whole surface. Rests on: Jensen 2001, 7.2 (boundary bias); the rays are an alternative to his convex hull,
- * which takes shadows for edges. Flow: photon_map asks, where the photons found hint at an edge. Threads: pure
- * functions of the scene and the point. */
+ * which takes shadows for edges. Flow: irradiance_estimate, where the photons found hint at an edge -> [here] ->
+ * rays/clear_space, rays/transmittance. Threads: pure functions of the scene and the point. */
 #ifndef AFTERGLOW_SURFACE_REGION_H
 #define AFTERGLOW_SURFACE_REGION_H
 
 #include "rays/clear_space.h"
 
-enum { SURFACE_REGION_SECTORS = 8 };
+enum { SURFACE_REGION_OCTANTS = 8 };
 
 /* A region of the tangent plane around its centre: in each octant of the frame x, y it is the near side of a chord,
  * line[0] x + line[1] y <= 1; a line of zeros bounds nothing. */
 typedef struct surface_region {
     vec3 center, x, y;
-    float line[SURFACE_REGION_SECTORS][2];
-    float bend[SURFACE_REGION_SECTORS][2]; /* along each octant's first bound, and in the frame x, y: by how much the
+    float line[SURFACE_REGION_OCTANTS][2];
+    float bend[SURFACE_REGION_OCTANTS][2]; /* along each octant's first bound, and in the frame x, y: by how much the
                                               normal's part in the plane grows over a scene unit; 0 where flat */
     float share; /* share of the area within those bounds that is surface: below 1 where alpha cuts holes (alpha.h) */
-    float nearest_end; /* distance from the centre to the nearest end of the surface, by the sectors' bounds, scene
+    float nearest_end; /* distance from the centre to the nearest end of the surface, along the octants' bounds, scene
                           units */
 } surface_region;
 
 /* The bounds of the octants in the frame x, y, counter-clockwise; each octant's first bound has its index. */
-static const float SURFACE_REGION_BOUND[SURFACE_REGION_SECTORS][2] = {
+static const float SURFACE_REGION_BOUND[SURFACE_REGION_OCTANTS][2] = {
     {1.0f, 0.0f},  {0.70710678f, 0.70710678f},   {0.0f, 1.0f},  {-0.70710678f, 0.70710678f},
     {-1.0f, 0.0f}, {-0.70710678f, -0.70710678f}, {0.0f, -1.0f}, {0.70710678f, -0.70710678f}};
 
-/* The octants by bits: |y| > |x|, x < 0, y < 0, from the lowest. */
-static const uint32_t SURFACE_REGION_OCTANT[SURFACE_REGION_SECTORS] = {0, 1, 3, 2, 7, 6, 4, 5};
+/* The octant of a point of the plane, by the bits |y| > |x|, x < 0, y < 0, from the lowest. */
+static const uint32_t SURFACE_REGION_OCTANT_BY_SIGNS[SURFACE_REGION_OCTANTS] = {0, 1, 3, 2, 7, 6, 4, 5};
 
 /* Finds the region around a point. min_cos: normals with a greater cosine belong to the surface, as for photons. The
  * rays cast are added to *in_out_rays, here and below. space: a clear space nearby, or NULL; rays whose answer it tells
@@ -55,6 +55,8 @@ bool surface_region_reaches_rim(const scene *s, const clear_space *space, vec3 p
 bool surface_region_is_whole(const scene *s, const clear_space *space, vec3 position, vec3 normal, float min_cos,
                              float radius);
 
+/* Returns whether the position's projection on the tangent plane lies in the region; its distance from the centre does
+ * not count. */
 bool surface_region_contains(const surface_region *region, vec3 position);
 
 /* Returns the area of the surface within radius of the centre, m^2. Where it ends because it bends away, that is more

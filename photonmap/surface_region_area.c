@@ -22,7 +22,7 @@ static double area_of_arc(const surface_region *region, int octant, const float 
 {
     float parts[2];
     split_by_bounds(octant, at, parts);
-    const float *first = region->bend[octant], *second = region->bend[(octant + 1) % SURFACE_REGION_SECTORS];
+    const float *first = region->bend[octant], *second = region->bend[(octant + 1) % SURFACE_REGION_OCTANTS];
     float x = parts[0] * first[0] + parts[1] * second[0], y = parts[0] * first[1] + parts[1] * second[1];
     float cosine = sqrtf(1.0f - fminf(x * x + y * y, SINE_SQUARED_MOST));
     return 2.0 / (1.0 + (double)cosine);
@@ -40,13 +40,33 @@ static double sector_area(const surface_region *region, int octant, const float 
     return 0.5 * angle * (double)radius * (double)radius * area_of_arc(region, octant, middle);
 }
 
+/* The mean of area_of_arc over a stretch of an octant's chord: foot + t along, t from begin to end. */
+static double mean_area_of_arcs(const surface_region *region, int octant, const float foot[2], const float along[2],
+                                float begin, float end)
+{
+    enum { PARTS = 8 };
+    bool is_bent = false;
+    for (int i = octant; i < octant + 2; i++) {
+        const float *bend = region->bend[i % SURFACE_REGION_OCTANTS];
+        is_bent |= bend[0] != 0.0f || bend[1] != 0.0f;
+    }
+    if (!is_bent)
+        return 1.0;
+    double mean = 0.0;
+    for (int i = 0; i < PARTS; i++) {
+        float t = begin + (end - begin) * ((float)i + 0.5f) / (float)PARTS;
+        const float at[2] = {foot[0] + along[0] * t, foot[1] + along[1] * t};
+        mean += area_of_arc(region, octant, at) / PARTS;
+    }
+    return mean;
+}
+
 /* The area that an octant's chord bounds, within the disc. */
 static double octant_area(const surface_region *region, int octant, float radius)
 {
-    enum { PARTS = 8 };
-    const float *u = SURFACE_REGION_BOUND[octant], *v = SURFACE_REGION_BOUND[(octant + 1) % SURFACE_REGION_SECTORS];
+    const float *u = SURFACE_REGION_BOUND[octant], *v = SURFACE_REGION_BOUND[(octant + 1) % SURFACE_REGION_OCTANTS];
     float a = region->line[octant][0], b = region->line[octant][1], square = a * a + b * b;
-    const double whole = (double)AG_PI / SURFACE_REGION_SECTORS * (double)radius * (double)radius;
+    const double whole = (double)AG_PI / SURFACE_REGION_OCTANTS * (double)radius * (double)radius;
     if (!(square * radius * radius > 1.0f))
         return whole;
     /* along the chord, from its point nearest to the centre: where the bounds meet it, and where the rim does */
@@ -62,17 +82,8 @@ static double octant_area(const surface_region *region, int octant, float radius
     if (!(begin < end))
         return whole;
     const float foot[2] = {a * height * height, b * height * height};
-    bool is_bent = false;
-    for (int i = octant; i < octant + 2; i++)
-        is_bent |=
-            region->bend[i % SURFACE_REGION_SECTORS][0] != 0.0f || region->bend[i % SURFACE_REGION_SECTORS][1] != 0.0f;
-    double bent = is_bent ? 0.0 : 1.0;
-    for (int i = 0; is_bent && i < PARTS; i++) {
-        float t = begin + (end - begin) * ((float)i + 0.5f) / (float)PARTS;
-        const float at[2] = {foot[0] + along[0] * t, foot[1] + along[1] * t};
-        bent += area_of_arc(region, octant, at) / PARTS;
-    }
-    double area = 0.5 * (double)height * (double)(end - begin) * bent;
+    double area =
+        0.5 * (double)height * (double)(end - begin) * mean_area_of_arcs(region, octant, foot, along, begin, end);
     if (is_cut_first) {
         const float bound[2] = {u[0] * radius, u[1] * radius};
         const float at[2] = {foot[0] + along[0] * begin, foot[1] + along[1] * begin};
@@ -89,7 +100,7 @@ static double octant_area(const surface_region *region, int octant, float radius
 double surface_region_area(const surface_region *region, float radius)
 {
     double sum = 0.0;
-    for (int i = 0; i < SURFACE_REGION_SECTORS; i++)
+    for (int i = 0; i < SURFACE_REGION_OCTANTS; i++)
         sum += octant_area(region, i, radius);
     return (double)region->share * sum;
 }

@@ -114,7 +114,7 @@ static void sums_are_the_same(void **state)
             pick_photons(&random, &tree, disc.position, &found);
             frame f = frame_from_z(disc.normal);
             surface_region region = {.center = disc.position, .x = f.x, .y = f.y};
-            for (int i = 0; i < SURFACE_REGION_SECTORS; i++)
+            for (int i = 0; i < SURFACE_REGION_OCTANTS; i++)
                 for (int a = 0; a < 2; a++)
                     region.line[i][a] = round % 5 ? 8.0f * rng_float(&random) - 4.0f : 0.0f;
 
