@@ -27,6 +27,7 @@ static photon_file_map record_of(const photon_map *map)
                              .is_steady = map->is_steady};
 }
 
+/* Writes bytes at an offset. Returns 0, or an errno. */
 static int write_at(const run_context *run, int descriptor, const void *bytes, uint64_t size, uint64_t at)
 {
     const char *next = bytes;
@@ -44,6 +45,25 @@ static int write_at(const run_context *run, int descriptor, const void *bytes, u
         size -= (uint64_t)written;
     }
     return 0;
+}
+
+/* Writes bytes at an offset, and zeros up to the next page. Returns 0, or an errno. */
+static int write_pages(const run_context *run, int descriptor, const void *bytes, uint64_t size, uint64_t at)
+{
+    static const char zeros[PHOTON_FILE_PAGE];
+    int error = write_at(run, descriptor, bytes, size, at);
+    return error == 0 ? write_at(run, descriptor, zeros, photon_file_to_page(size) - size, at + size) : error;
+}
+
+/* Returns a number that no other file has, but for chance. */
+static uint64_t make_nonce(void)
+{
+    uint64_t nonce;
+    if (getrandom(&nonce, sizeof nonce, GRND_NONBLOCK) == (ssize_t)sizeof nonce)
+        return nonce;
+    struct timespec now;
+    clock_gettime(CLOCK_REALTIME, &now);
+    return hash_mix64((uint64_t)now.tv_nsec ^ (uint64_t)now.tv_sec << 30 ^ (uint64_t)getpid() << 44);
 }
 
 /* Writes the check values of all irradiance photons, by pages; 0 where a slot is not ready, and behind the last one. */
@@ -77,11 +97,7 @@ int photon_file_write(const run_context *run, int descriptor, const photon_file_
         trees[PHOTON_FILE_IRRADIANCE] = global->irradiance_photons;
     for (int i = 0; i < PHOTON_FILE_TREE_COUNT; i++)
         h.trees[i] = (photon_file_tree){.count = trees[i].count, .depth = trees[i].depth};
-    if (getrandom(&h.nonce, sizeof h.nonce, GRND_NONBLOCK) != (ssize_t)sizeof h.nonce) {
-        struct timespec now;
-        clock_gettime(CLOCK_REALTIME, &now);
-        h.nonce = hash_mix64((uint64_t)now.tv_nsec ^ (uint64_t)now.tv_sec << 30 ^ (uint64_t)getpid() << 44);
-    }
+    h.nonce = make_nonce();
     h.file_bytes = photon_file_lay_out(h.trees, &h.checks_at);
     if (!photon_file_hash_content(run, trees, &h.content))
         return ECANCELED;
@@ -92,23 +108,15 @@ int photon_file_write(const run_context *run, int descriptor, const photon_file_
     int error = posix_fallocate(descriptor, 0, (off_t)h.file_bytes);
     if (error != 0 && error != EOPNOTSUPP && error != EINVAL && error != ENOSYS && error != EBADF)
         return error;
-    static const char zeros[PHOTON_FILE_PAGE];
-    uint64_t owners_end = photon_file_to_page(PHOTON_FILE_OWNERS_AT + CLAIM_OWNERS_MAX * sizeof(claim_owner));
-    for (uint64_t at = 0; at < owners_end; at += PHOTON_FILE_PAGE)
-        if ((error = write_at(run, descriptor, zeros, PHOTON_FILE_PAGE, at)) != 0)
-            return error;
-    error = write_at(run, descriptor, &h, sizeof h, 0);
+    static const claim_owner no_owners[CLAIM_OWNERS_MAX];
+    error = write_pages(run, descriptor, &h, sizeof h, 0);
+    if (error == 0)
+        error = write_pages(run, descriptor, no_owners, sizeof no_owners, PHOTON_FILE_OWNERS_AT);
     for (int i = 0; i < PHOTON_FILE_TREE_COUNT && error == 0; i++) {
         const photon_file_tree *t = &h.trees[i];
-        uint64_t size = photon_file_blocks_bytes(t), rest = photon_file_to_page(size) - size;
-        error = write_at(run, descriptor, trees[i].blocks, size, t->blocks_at);
+        error = write_pages(run, descriptor, trees[i].blocks, photon_file_blocks_bytes(t), t->blocks_at);
         if (error == 0)
-            error = write_at(run, descriptor, zeros, rest, t->blocks_at + size);
-        size = photon_file_nodes_bytes(t), rest = photon_file_to_page(size) - size;
-        if (error == 0)
-            error = write_at(run, descriptor, trees[i].nodes, size, t->nodes_at);
-        if (error == 0)
-            error = write_at(run, descriptor, zeros, rest, t->nodes_at + size);
+            error = write_pages(run, descriptor, trees[i].nodes, photon_file_nodes_bytes(t), t->nodes_at);
     }
     return error == 0 ? write_checks(run, descriptor, &global->irradiance_photons, h.checks_at) : error;
 }
