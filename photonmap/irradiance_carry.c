@@ -107,7 +107,7 @@ static uint64_t count_missing(const atomic_u32 *found, uint32_t count)
     return missing;
 }
 
-/* Appends the photons of a map that the other has not. */
+/* Appends the photons of a map that the other has not. Returns where the next one would go. */
 static photon *append_missing(const photon_map *map, const atomic_u32 *found, photon *out)
 {
     for (uint32_t i = 0; i < map->set.count; i++) {
@@ -154,13 +154,45 @@ static bool is_changed(const photon_tree *changes, vec3 position, vec3 normal, f
     return false;
 }
 
-/* Makes that tree. *out_records, which its blocks are, is to be freed; NULL where there is none. is_few false: there
- * are too many. */
-static ag_status find_changes(run_context *run, const photon_map *before, const photon_map *map, photon **out_records,
-                              photon_tree *out_tree, bool *out_is_few, irradiance_carry *out)
+/* Photons that came or went: a tree over them, and the records that its blocks are. */
+typedef struct photon_changes {
+    photon *records; /* owned; NULL where there are none */
+    photon_tree tree;
+    bool are_few; /* else there is no tree, and nothing is worth carrying */
+} photon_changes;
+
+static void photon_changes_reset(photon_changes *changes)
+{
+    photon_tree_reset(&changes->tree);
+    free(changes->records);
+    *changes = (photon_changes){0};
+}
+
+/* Makes the tree of the photons that are in one of two matched maps alone. */
+static ag_status gather_changes(run_context *run, const match_job *matched, photon_changes *out_changes,
+                                irradiance_carry *out)
+{
+    out->came = count_missing(matched->found, matched->map->set.count);
+    out->went = count_missing(matched->found_before, matched->before->set.count);
+    uint64_t all = out->came + out->went;
+    out_changes->are_few =
+        (double)all * matched->map->nearest <= CHANGES_MOST * (double)matched->map->set.count && all < PHOTON_NONE;
+    if (!out_changes->are_few || all == 0)
+        return AG_OK;
+    out_changes->records = photon_records_create((uint32_t)all);
+    if (!out_changes->records)
+        return AG_ERROR_MEMORY;
+    photon *next = append_missing(matched->map, matched->found, out_changes->records);
+    append_missing(matched->before, matched->found_before, next);
+    return photon_tree_build(run, out_changes->records, (uint32_t)all, 0.0, 0.0, &out_changes->tree);
+}
+
+/* Finds the photons that came or went. *out_changes is to be reset, on failure too. */
+static ag_status find_changes(run_context *run, const photon_map *before, const photon_map *map,
+                              photon_changes *out_changes, irradiance_carry *out)
 {
     match_job job = {run, before, map, NULL, NULL};
-    *out_is_few = false;
+    *out_changes = (photon_changes){0};
     job.found_before = calloc(before->set.count / BITS + 1, sizeof *job.found_before);
     job.found = calloc(map->set.count / BITS + 1, sizeof *job.found);
     ag_status status = job.found_before && job.found ? AG_OK : AG_ERROR_MEMORY;
@@ -168,20 +200,8 @@ static ag_status find_changes(run_context *run, const photon_map *before, const 
         status = parallel_for(run, map->set.count, PHOTONS_AT_ONCE, match_block, &job, AG_PHASE_MAP, 0.0, 0.0);
     if (status == AG_OK && run_is_cancelled(run))
         status = AG_CANCELLED;
-    if (status == AG_OK) {
-        out->came = count_missing(job.found, map->set.count);
-        out->went = count_missing(job.found_before, before->set.count);
-        uint64_t all = out->came + out->went;
-        *out_is_few = (double)all * map->nearest <= CHANGES_MOST * (double)map->set.count && all < PHOTON_NONE;
-        if (*out_is_few && all > 0) {
-            *out_records = photon_records_create((uint32_t)all);
-            status = *out_records ? AG_OK : AG_ERROR_MEMORY;
-            if (status == AG_OK) {
-                append_missing(before, job.found_before, append_missing(map, job.found, *out_records));
-                status = photon_tree_build(run, *out_records, (uint32_t)all, 0.0, 0.0, out_tree);
-            }
-        }
-    }
+    if (status == AG_OK)
+        status = gather_changes(run, &job, out_changes, out);
     free(job.found_before);
     free(job.found);
     return status;
@@ -253,12 +273,10 @@ ag_status irradiance_carry_over(run_context *run, const photon_map *before, cons
     *out_carry = (irradiance_carry){0};
     if (!difference->is_known || !are_alike(before, map))
         return AG_OK;
-    photon *records = NULL;
-    photon_tree changes = {0};
-    bool is_few;
-    ag_status status = find_changes(run, before, map, &records, &changes, &is_few, out_carry);
-    if (status == AG_OK && is_few) {
-        carry_job job = {run, before, map, &changes, difference, 0};
+    photon_changes changes;
+    ag_status status = find_changes(run, before, map, &changes, out_carry);
+    if (status == AG_OK && changes.are_few) {
+        carry_job job = {run, before, map, &changes.tree, difference, 0};
         map->has_been_cached = true;
         status = parallel_for(run, map->irradiance_photons.count, PHOTONS_AT_ONCE, carry_block, &job, AG_PHASE_MAP, 0.0,
                               0.0);
@@ -266,7 +284,6 @@ ag_status irradiance_carry_over(run_context *run, const photon_map *before, cons
             status = AG_CANCELLED;
         out_carry->kept = load_relaxed_u64(&job.kept);
     }
-    photon_tree_reset(&changes);
-    free(records);
+    photon_changes_reset(&changes);
     return status;
 }
