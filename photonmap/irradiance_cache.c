@@ -54,7 +54,7 @@ ag_status irradiance_cache_create(photon_map *map, irradiance_cache_mode mode, u
     }
     photon_map_make_spaces(map, worker_count * SPARE_BYTES_PER_WORKER);
     if (map->has_been_cached)
-        c.ready_before = irradiance_cache_distinct(&c);
+        c.ready_before = photon_map_count_ready(map);
     map->has_been_cached = true;
     *out_cache = c;
     return AG_OK;
@@ -206,7 +206,7 @@ void irradiance_cache_save(const irradiance_cache *cache, uint32_t *out_words)
 
 void irradiance_cache_restore(irradiance_cache *cache, const uint32_t *words)
 {
-    uint64_t distinct = irradiance_cache_distinct(cache);
+    uint64_t ready = photon_map_count_ready(cache->map);
     for (uint32_t i = 0; i < cache->map->irradiance_photons.count; i++) {
         uint32_t found;
         irradiance_slot *slot = photon_map_slot(cache->map, i);
@@ -214,7 +214,7 @@ void irradiance_cache_restore(irradiance_cache *cache, const uint32_t *words)
         if (irradiance_word_is_ready(words[i]) && irradiance_slot_try_claim(slot, claimer, &found))
             publish(cache->map, i, claimer, words[i]);
     }
-    cache->ready_before += irradiance_cache_distinct(cache) - distinct;
+    cache->ready_before += photon_map_count_ready(cache->map) - ready;
 }
 
 /* Answers a query that no photon stands for: by an estimate at the point where there is none near (PHOTON_NONE), and by
@@ -476,8 +476,5 @@ double irradiance_counters_estimate_seconds(const irradiance_counters *counters)
 
 uint64_t irradiance_cache_distinct(const irradiance_cache *cache)
 {
-    uint64_t ready = 0;
-    for (uint32_t i = 0; i < cache->map->irradiance_photons.count; i++)
-        ready += irradiance_word_is_ready(irradiance_slot_read(photon_map_slot(cache->map, (uint32_t)i)));
-    return ready - cache->ready_before;
+    return photon_map_count_ready(cache->map) - cache->ready_before;
 }

@@ -197,6 +197,14 @@ void photon_map_reset(photon_map *map)
     photon_set_reset(&map->set);
 }
 
+uint64_t photon_map_count_ready(const photon_map *map)
+{
+    uint64_t ready = 0;
+    for (uint32_t i = 0; i < map->irradiance_photons.count; i++)
+        ready += irradiance_word_is_ready(irradiance_slot_read(photon_map_slot(map, i)));
+    return ready;
+}
+
 uint64_t photon_map_bytes(const photon_map *map)
 {
     uint64_t bytes = photon_block_count(map->set.count) * sizeof(photon_block) + photon_tree_bytes(&map->tree);

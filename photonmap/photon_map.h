@@ -68,18 +68,20 @@ static inline bool photon_map_all_have_irradiance(const photon_map *map)
     return map->irradiance_photons.blocks == map->blocks;
 }
 
-/* Returns the index among all photons of an irradiance photon: a record in a tree of its own has it instead of a flux.
- */
+/* Returns the index among all photons of an irradiance photon. */
 static inline uint32_t photon_map_index(const photon_map *map, uint32_t irradiance_photon)
 {
     return photon_map_all_have_irradiance(map) ? irradiance_photon
-                                               : photon_block_flux(map->irradiance_photons.blocks, irradiance_photon);
+                                               : irradiance_photons_source(&map->irradiance_photons, irradiance_photon);
 }
 
 static inline irradiance_slot *photon_map_slot(const photon_map *map, uint32_t irradiance_photon)
 {
     return photon_block_slot(map->irradiance_photons.blocks, irradiance_photon);
 }
+
+/* Returns the number of irradiance photons whose slots are ready. */
+uint64_t photon_map_count_ready(const photon_map *map);
 
 /* Returns the bytes of the photons, the irradiance photons, the trees and the clear spaces. */
 uint64_t photon_map_bytes(const photon_map *map);

@@ -26,11 +26,3 @@ photon_merge_result photon_merge(photon_map *into, const photon_map *from, uint6
     }
     return PHOTON_MERGE_DONE;
 }
-
-uint64_t photon_merge_count_ready(const photon_map *map)
-{
-    uint64_t ready = 0;
-    for (uint32_t i = 0; i < map->irradiance_photons.count; i++)
-        ready += irradiance_word_is_ready(irradiance_slot_read(photon_map_slot(map, i)));
-    return ready;
-}

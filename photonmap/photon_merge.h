@@ -17,7 +17,4 @@ typedef enum photon_merge_result {
 photon_merge_result photon_merge(photon_map *into, const photon_map *from, uint64_t *in_out_added,
                                  uint32_t *out_irradiance_photon);
 
-/* Returns the number of ready slots. */
-uint64_t photon_merge_count_ready(const photon_map *map);
-
 #endif

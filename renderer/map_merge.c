@@ -65,7 +65,7 @@ static ag_photon_map_info info_of(const read_map *m)
                                .photons_global = m->global.set.count,
                                .photons_caustic = m->caustic.set.count,
                                .irradiance_photons = m->global.irradiance_photons.count,
-                               .ready = photon_merge_count_ready(&m->global),
+                               .ready = photon_map_count_ready(&m->global),
                                .damaged = m->file.damaged};
     static const hash128 none;
     memcpy(info.program, m->key.program, sizeof m->key.program);

@@ -42,10 +42,10 @@ static void test_union(void **state)
         if (i % 4 == 0)
             set(&from, i, word_of(i));
     }
-    assert_int_equal(photon_merge_count_ready(&into), PHOTONS / 3);
+    assert_int_equal(photon_map_count_ready(&into), PHOTONS / 3);
     assert_int_equal(photon_merge(&into, &from, &added, &irradiance_photon), PHOTON_MERGE_DONE);
     assert_int_equal(added, 5 + PHOTONS / 4 - PHOTONS / 12);
-    assert_int_equal(photon_merge_count_ready(&into), PHOTONS / 3 + PHOTONS / 4 - PHOTONS / 12);
+    assert_int_equal(photon_map_count_ready(&into), PHOTONS / 3 + PHOTONS / 4 - PHOTONS / 12);
     for (uint32_t i = 0; i < PHOTONS; i++) {
         assert_int_equal(get(&into, i), i % 3 == 0 || i % 4 == 0 ? word_of(i) : 0);
         assert_int_equal(get(&from, i), i % 4 == 0 ? word_of(i) : 0);
