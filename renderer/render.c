@@ -17,7 +17,6 @@
 #include "render_tiles.h"
 #include "rendering_counts.h"
 #include "settings_table.h"
-#include "split_pilot.h"
 #include "status.h"
 
 #include <stdlib.h>
@@ -303,7 +302,9 @@ ag_status ag_rendering_create_view(ag_rendering *beside, const float from[3], co
 
 static ag_status render_wanted(ag_rendering *r, uint32_t wanted)
 {
-    AG_TRY(split_pilot_run(r));
+    const integrator *kind = integrator_of(r->settings.integrator);
+    if (kind->begin_pass)
+        AG_TRY(kind->begin_pass(r));
     return r->film->wanted ? render_adaptively(r, wanted) : render_passes(r, wanted);
 }
 

@@ -23,6 +23,12 @@ typedef struct integrator {
      * of memory. eye_workers_destroy frees it. */
     bool (*reserve)(const transport *t, eye_worker *worker);
 
+    /* Called before each pass, which is one ag_rendering_continue; none of the workers is at work. After a whole pass
+     * each pixel has as many samples as settings and film say, so what is learned from them for the next pass is the
+     * same for any number of threads. It is called again where the pass before was cancelled or paused. Errors:
+     * AG_ERROR_MEMORY, AG_CANCELLED; after AG_PAUSED the next call goes on. */
+    ag_status (*begin_pass)(struct ag_rendering *r);
+
     /* Adds the radiance along a camera ray to a sample that has nothing in it but its bounds and room for layers; what
      * complete brings comes later. */
     void (*sample)(const transport *t, eye_worker *worker, const camera_sample *from, eye_sample *in_out);

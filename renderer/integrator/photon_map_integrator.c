@@ -1,10 +1,11 @@
 /* photon_map_integrator.c: the integrator that gathers from a photon map: its maps and cache, its workers' batches.
  * Rests on: Jensen 1996; Christensen 1999; Neilson, Yang, TR 04-21, 2004.
- * Flow: render -> [here] -> render_maps; shading, final_gather. Threads: see integrator.h. */
+ * Flow: render -> [here] -> render_maps, split_pilot; shading, final_gather. Threads: see integrator.h. */
 #include "integrator/final_gather.h"
 #include "integrator/integrator.h"
 #include "integrator/shading.h"
 #include "render_maps.h"
+#include "split_pilot.h"
 #include "status.h"
 
 enum { ARENA_BLOCK_BYTES = 1 << 16 };
@@ -45,5 +46,6 @@ const integrator photonmap_integrator = {.has_photon_map = true,
                                          .direct_guiding = AG_DEFAULT_DIRECT_GUIDING,
                                          .prepare = prepare,
                                          .reserve = reserve,
+                                         .begin_pass = split_pilot_run,
                                          .sample = shading_radiance,
                                          .complete = final_gather_resolve};
