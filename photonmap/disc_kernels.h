@@ -3,7 +3,7 @@
  * that their results have the same bits, which tests/photonmap checks. The plain version goes photon by photon: it
  * serves processors without AVX2, and it checks the other versions, with which it shares no code. Without the AVX2
  * version a frame of the Cornell box takes 9 % more CPU time (cornell-box -t 1 --noise 0 --size 160x90 --spp 4
- * --photons 300000; median of pairs of runs, AMD EPYC); perf/README.md tells what AVX-512 brings.
+ * --photons 300000; median of pairs of runs, AMD EPYC); perf/costs.md tells what AVX-512 brings.
  * Rests on: Intel, "64 and IA-32 Architectures Optimization Reference Manual", ch. on AVX2 and on AVX-512.
  * Flow: photon_k_nearest, irradiance_estimate -> [here]. Threads: pure but for what the caller owns. */
 #ifndef AFTERGLOW_DISC_KERNELS_H

@@ -10,7 +10,7 @@
 
 /* The renderer's own numbers: render_tiles.c, irradiance_cache.h. */
 enum { TILE_SIZE = 32, BATCH_REQUESTS = 1 << 16 };
-/* The lookup's share of a request's own time (perf/README.md, "Where the time goes": 20 of 72). A batch has all its
+/* The lookup's share of a request's own time (perf/costs.md, "Where the time goes": 20 of 72). A batch has all its
  * lookups first, then computes what nobody has claimed, then reads what others have computed. */
 static const double LOOKUP_SHARE = 0.28;
 /* Looking at a slot that needs no work. */

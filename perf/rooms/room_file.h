@@ -1,5 +1,5 @@
 /* room_file.h: one of the forty rooms as a scene file in the pbrt-v4 format, self-contained.
- * Holds all that the paper does not say: reflectances, light power, camera; perf/README.md lists them.
+ * Holds all that the paper does not say: reflectances, light power, camera; perf/pictures.md lists them.
  * Flow: room_layout -> [here] -> the renderer. Threads: any, on different paths. */
 #ifndef AFTERGLOW_ROOM_FILE_H
 #define AFTERGLOW_ROOM_FILE_H

@@ -3,7 +3,7 @@
  * normals).
  * Flow: bvh -> [here] -> photon tracing. It says what bsdf.c says: tests/scene/test_bsdf.c holds the two together.
  * Measured: with a bsdf instead, photons of the Cornell box take 5 % more CPU time, those of veach-ajar 2 %
- * (README.md). Threads: pure functions. */
+ * (shortcuts.md). Threads: pure functions. */
 #ifndef AFTERGLOW_LAMBERT_H
 #define AFTERGLOW_LAMBERT_H
 

@@ -39,7 +39,7 @@ void ray_fan_hit(const scene *s, const ray_fan *f, uint32_t i, surface_hit *out_
 
 /* A shortcut for a ray that met a plain Lambertian surface: returns its reflectance, and writes the position of the hit
  * and the normal on the ray's side. NULL: the surface needs ray_fan_hit. Measured: without it, by ray_fan_hit and a
- * bsdf at each end, a frame of the Cornell box takes 7 % more CPU time (material/README.md). */
+ * bsdf at each end, a frame of the Cornell box takes 7 % more CPU time (material/shortcuts.md). */
 const rgb *ray_fan_plain_point(const scene *s, const ray_fan *f, uint32_t i, surface_point *out_point);
 
 /* Returns the distance of the nearest surface along the ray, INFINITY where there is none. It is traversal alone,
