@@ -126,7 +126,7 @@ static uint32_t compute(irradiance_cache *cache, uint32_t index, uint32_t claime
     uint32_t leaf = photon_map_index(map, index) / PHOTON_BLOCK_LANES;
     irradiance_extent extent = estimate(cache, leaf, photon_block_position(blocks, index),
                                         direction_decode(photon_block_normal(blocks, index)), worker_index, &irradiance,
-                                        map->reaches ? &map->reaches[index] : NULL);
+                                        map->reaches_squared ? &map->reaches_squared[index] : NULL);
     uint32_t word = irradiance_estimate_word(map, index, extent, irradiance);
     if (publish(map, index, claimer, word)) {
         cache->counters[worker_index].computed++;
@@ -239,11 +239,11 @@ static bool answer_by_word(irradiance_cache *cache, const irradiance_query *quer
     uint32_t value = word & IRRADIANCE_VALUE_MASK;
     bool holds = value != PHOTON_NO_IRRADIANCE;
     rgb irradiance = holds ? photon_map_decode_irradiance(map, value) : rgb_gray(0.0f);
-    if (holds && !photon_map_reaches(map, irradiance_photon, distance_squared, irradiance))
+    if (holds && !photon_map_may_hold(map, irradiance_photon, distance_squared, irradiance))
         return answer_without_photon(cache, query, PHOTON_NONE, worker_index, out_irradiance);
     if (irradiance_word_state(word) == IRRADIANCE_READY_IN_SIGHT && map->surfaces)
-        holds = !photon_map_is_beyond_gap(map, map->irradiance_photons.blocks, query->position, query->normal,
-                                          irradiance_photon, &cache->counters[worker_index].rays);
+        holds = !photon_map_is_hidden(map, map->irradiance_photons.blocks, query->position, query->normal,
+                                      irradiance_photon, &cache->counters[worker_index].rays);
     *out_irradiance = holds ? irradiance : rgb_gray(0.0f);
     cache->counters[worker_index].refused += !holds;
     return holds;

@@ -94,8 +94,8 @@ typedef struct irradiance_request {
 /* Requests the irradiance at a point, on the side of the unit normal. On return the request is answered
  * (request->irradiance_photon is PHOTON_NONE); or another thread is computing it, and the caller goes on with other
  * work and calls irradiance_cache_retry later. Where the nearest photon's irradiance does not reach
- * (photon_map_reaches), an estimate at the point itself answers. There is no irradiance where no estimate holds at that
- * photon (irradiance_estimate.h), or where the point has to see the photon and does not. */
+ * (photon_map_may_hold), an estimate at the point itself answers. There is no irradiance where no estimate holds at
+ * that photon (irradiance_estimate.h), or where the point has to see the photon and does not. */
 void irradiance_cache_get(irradiance_cache *cache, vec3 position, vec3 normal, unsigned worker_index,
                           irradiance_request *out_request);
 

@@ -226,7 +226,7 @@ static uint32_t word_before(const photon_map *before, vec3 position, uint16_t no
         for (uint32_t alike = lanes_alike(&p, block); alike; alike &= alike - 1) {
             uint32_t index = block * PHOTON_BLOCK_LANES + (uint32_t)__builtin_ctz(alike);
             uint32_t word = irradiance_slot_read(photon_map_slot(before, index));
-            *out_reach_squared = before->reaches[index];
+            *out_reach_squared = before->reaches_squared[index];
             if (irradiance_word_is_ready(word) && *out_reach_squared > 0.0f)
                 return word;
         }
@@ -250,7 +250,7 @@ static void carry_block(void *user, uint64_t begin, uint64_t end, uint64_t block
         if (!word || is_changed(job->changes, position, direction_decode(code), reach_squared) ||
             scene_difference_is_near(job->difference, position, rays * reach_squared))
             continue;
-        job->map->reaches[i] = reach_squared;
+        job->map->reaches_squared[i] = reach_squared;
         store_relaxed_u32(photon_map_slot(job->map, i), word); /* the cache that reads it comes later */
         kept++;
     }
@@ -260,11 +260,11 @@ static void carry_block(void *user, uint64_t begin, uint64_t end, uint64_t block
 /* Whether estimates of both maps sum, scale, bound and round alike. */
 static bool are_alike(const photon_map *a, const photon_map *b)
 {
-    return a->is_steady && b->is_steady && a->reaches && b->reaches && a->set.count > 0 && b->set.count > 0 &&
-           a->set.emitted_paths == b->set.emitted_paths && a->nearest == b->nearest && a->max_radius == b->max_radius &&
-           a->min_radius_squared == b->min_radius_squared && a->mean_radius == b->mean_radius &&
-           a->flux_exponent_max == b->flux_exponent_max && a->irradiance_bias == b->irradiance_bias &&
-           photon_map_far(a) == photon_map_far(b);
+    return a->is_steady && b->is_steady && a->reaches_squared && b->reaches_squared && a->set.count > 0 &&
+           b->set.count > 0 && a->set.emitted_paths == b->set.emitted_paths && a->nearest == b->nearest &&
+           a->max_radius == b->max_radius && a->min_radius_squared == b->min_radius_squared &&
+           a->mean_radius == b->mean_radius && a->flux_exponent_max == b->flux_exponent_max &&
+           a->irradiance_bias == b->irradiance_bias && photon_map_sight_distance(a) == photon_map_sight_distance(b);
 }
 
 ag_status irradiance_carry_over(run_context *run, const photon_map *before, const scene_difference *difference,

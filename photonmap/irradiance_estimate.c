@@ -220,7 +220,7 @@ static irradiance_extent fit_to_surface(const photon_map *map, const clear_space
     if (!holds)
         return IRRADIANCE_HOLDS_NOWHERE;
     /* farther points must see the photon anyway */
-    return region.nearest_end < photon_map_far(map) ? IRRADIANCE_HOLDS_IN_SIGHT : extent;
+    return region.nearest_end < photon_map_sight_distance(map) ? IRRADIANCE_HOLDS_IN_SIGHT : extent;
 }
 
 /* The clear space of the leaf that the point lies in. */

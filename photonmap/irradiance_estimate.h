@@ -13,7 +13,7 @@ typedef enum irradiance_extent {
     IRRADIANCE_HOLDS_NOWHERE,
     IRRADIANCE_HOLDS_IN_SIGHT,  /* only points that see the estimate's point: a surface ends nearby, or another one lies
                                    above or below */
-    IRRADIANCE_HOLDS_EVERYWHERE /* no surface ends within photon_map_far */
+    IRRADIANCE_HOLDS_EVERYWHERE /* no surface ends within photon_map_sight_distance */
 } irradiance_extent;
 
 /* Writes the irradiance, W/m^2, on the side of the unit normal, from the k nearest photons: their flux over the area

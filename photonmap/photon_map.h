@@ -34,8 +34,7 @@ typedef struct photon_map {
     int flux_exponent_max;     /* largest exponent of the photons' fluxes: the unit of sums */
     int irradiance_bias;       /* added to a slot's 6-bit exponent */
     float irradiance_unit[64]; /* of a slot's mantissas, by its exponent */
-    /* photon_map_reaches holds where irradiance x squared distance is below this times the flux. */
-    float surely_reaches;
+    float surely_holds;    /* photon_map_may_hold is true where irradiance x squared distance is below this x flux */
     const scene *surfaces; /* borrowed, or NULL */
     bool is_borrowed;      /* blocks and nodes are a photon_file's */
     atomic_u8 *checks; /* of a map from a file: irradiance_word_check of each irradiance photon, borrowed; else NULL */
@@ -43,10 +42,10 @@ typedef struct photon_map {
     /* Radii and exponents, on which all estimates depend, are rounded, and an irradiance is rounded by its photon's
      * position, so that both stay the same where a few photons come and go. */
     bool is_steady;
-    clear_spaces *spaces; /* owned, of the leaves of `tree`: they save rays, and change no bit. NULL until a cache is
-                             made over the map, where nothing is known of the surfaces, and where memory is short */
-    float *reaches; /* owned, of a steady map: of each irradiance photon whose slot is ready the squared reach of its
-                       estimate (irradiance_estimate_find_reach); 0: not known */
+    clear_spaces *spaces;   /* owned, of the leaves of `tree`: they save rays, and change no bit. NULL until a cache is
+                               made over the map, where nothing is known of the surfaces, and where memory is short */
+    float *reaches_squared; /* owned, of a steady map: of each irradiance photon whose slot is ready the squared reach
+                       of its estimate (irradiance_estimate_find_reach); 0: not known */
 } photon_map;
 
 /* Builds a map from the set's photons, which it takes over, and frees on failure. A map without photons is valid: its
@@ -59,7 +58,7 @@ void photon_map_reset(photon_map *map);
 void photon_map_add_hash(const photon_map *map, hash128 *in_out_hash);
 
 /* Sets what follows from the rest of a map with photons and from its bias, for a map from a file: the values of
- * irradiance codes, and how far an irradiance surely reaches. */
+ * irradiance codes, and surely_holds. */
 void photon_map_derive(photon_map *map, int irradiance_bias);
 
 /* Returns whether all photons are irradiance photons; else these have blocks and indices of their own. */
@@ -110,20 +109,23 @@ bool photon_map_is_behind_wall(const photon_map *map, const photon_block *blocks
                                uint32_t index, uint64_t *in_out_rays);
 
 /* Returns whether a surface lies between a surface point and a photon, as photon_map_is_behind_wall does, or something
- * that ends a little above the surface of both: a door, or a wall with a gap. */
-bool photon_map_is_beyond_gap(const photon_map *map, const photon_block *blocks, vec3 position, vec3 normal,
-                              uint32_t index, uint64_t *in_out_rays);
+ * that ends a little above the surface of both: a door, or a wall with a gap. It casts one or two rays. */
+bool photon_map_is_hidden(const photon_map *map, const photon_block *blocks, vec3 position, vec3 normal, uint32_t index,
+                          uint64_t *in_out_rays);
 
 /* Returns the distance, scene units, beyond which an irradiance photon must be visible from a point to represent it: in
  * a dark room the nearest irradiance photon may belong to a bright room next door. Of evenly spread photons 1 in 7 is
  * that far; the light that still leaks through a partition decreases with the square of the distance. */
-float photon_map_far(const photon_map *map);
+float photon_map_sight_distance(const photon_map *map);
+
+/* Returns the distance, scene units, beyond which no irradiance photon represents a point: half the largest radius. */
+float photon_map_nearest_radius(const photon_map *map);
 
 /* A result of photon_map_nearest: the nearest irradiance photon is hidden. */
 #define PHOTON_HIDDEN (PHOTON_NONE - 1)
 
 /* Returns the irradiance photon whose irradiance represents a point. PHOTON_NONE: none with a similar normal lies
- * within half the largest radius. PHOTON_HIDDEN: the nearest one lies so far away, or so far off the point's tangent
+ * within photon_map_nearest_radius. PHOTON_HIDDEN: the nearest one lies so far away, or so far off the point's tangent
  * plane, that it must be visible, and it is not. The rays cast for that are added to *in_out_rays. */
 uint32_t photon_map_nearest(const photon_map *map, vec3 position, vec3 normal, uint64_t *in_out_rays);
 
@@ -131,7 +133,7 @@ uint32_t photon_map_nearest(const photon_map *map, vec3 position, vec3 normal, u
  * it. The disc around the point out to that photon is empty; for photons with this one's flux, of the density that the
  * irradiance implies, that has a probability of one in three thousand at the limit. At the edge of a shadow, the
  * photons there are the nearest to points far in the dark, which would otherwise all be as bright as the edge. */
-bool photon_map_reaches(const photon_map *map, uint32_t irradiance_photon, float distance_squared, rgb irradiance);
+bool photon_map_may_hold(const photon_map *map, uint32_t irradiance_photon, float distance_squared, rgb irradiance);
 
 /* Returns the leaf of the irradiance photons' tree that contains a point: lookups in nearby leaves touch the same
  * memory. */

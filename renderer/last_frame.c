@@ -23,7 +23,7 @@ static void replace(ag_context *context, last_frame *by)
 
 void last_frame_leave(ag_context *context, photon_map *map, scene_forms *forms)
 {
-    last_frame *left = map->reaches ? malloc(sizeof *left) : NULL;
+    last_frame *left = map->reaches_squared ? malloc(sizeof *left) : NULL;
     if (!left) /* without memory the next frame computes all anew */
         return;
     *left = (last_frame){*map, *forms};

@@ -176,7 +176,7 @@ static ag_status trace_maps(ag_context *context, const scene *s, const ag_render
 /* Takes from the last frame what is the same in this one. */
 static ag_status follow_last_frame(maps *m, const scene *s)
 {
-    if (!m->global.reaches)
+    if (!m->global.reaches_squared)
         return AG_OK;
     phase_begin begin = context_begin_phase();
     ag_status status = scene_forms_create(s, &m->forms);

@@ -59,7 +59,7 @@ static void expect_words(const photon_map *carried, const photon_map *computed, 
         if (word != 0 && word != word_of(computed, i))
             fail_msg("photon %u has %08x, not %08x", i, word, word_of(computed, i));
         if (word != 0)
-            assert_true(carried->reaches[i] == computed->reaches[i]);
+            assert_true(carried->reaches_squared[i] == computed->reaches_squared[i]);
     }
     assert_int_equal(ready, kept);
 }
