@@ -5,9 +5,9 @@
 
 /* A cube is divided while it holds more points than LEAF_MOST: a surface that passes through leaves about a quarter of
  * them to each part that it passes through, so that hardly any of those is empty by chance. */
-enum { WAYS = 6, LEAF_MOST = 24, DEPTH_MAX = 24, PARTS = 8 };
-/* A point counts for each way that its normal is within 60 degrees of. */
-static const float WAY_COSINE = 0.5f;
+enum { FACES = 6, LEAF_MOST = 24, DEPTH_MAX = 24, PARTS = 8 };
+/* A point counts for each face of a cube whose direction its normal is within 60 degrees of. */
+static const float FACE_COSINE = 0.5f;
 
 struct importance_node {
     uint32_t first_part; /* of eight side by side; 0: a leaf, since the roots come first */
@@ -19,7 +19,7 @@ typedef struct builder {
     importance_node *nodes;
     uint32_t count, capacity;
     vec3 *points, *scratch;
-    float unit; /* share of one point */
+    float unit; /* what one point adds to the share of a cube */
     bool is_smooth;
 } builder;
 
@@ -51,20 +51,20 @@ static vec3 part_corner(vec3 corner, float half, uint32_t part)
                   corner.z + (part & 4 ? half : 0.0f)};
 }
 
-/* Puts the points of a cube in the order of its parts. */
+/* Puts the points of a cube in the order of its parts; out_ends: where each part's points end. */
 static void sort_points(builder *b, uint32_t begin, uint32_t end, vec3 middle, uint32_t out_ends[PARTS])
 {
-    uint32_t points[PARTS] = {0}, sum = begin;
+    uint32_t next[PARTS] = {0}, sum = begin; /* each part's number of points, then where its next one goes */
     for (uint32_t i = begin; i < end; i++)
-        points[part_of(b->points[i], middle)]++;
+        next[part_of(b->points[i], middle)]++;
     for (int i = 0; i < PARTS; i++) {
-        uint32_t count = points[i];
-        points[i] = sum;
+        uint32_t count = next[i];
+        next[i] = sum;
         sum += count;
         out_ends[i] = sum;
     }
     for (uint32_t i = begin; i < end; i++)
-        b->scratch[points[part_of(b->points[i], middle)]++] = b->points[i];
+        b->scratch[next[part_of(b->points[i], middle)]++] = b->points[i];
     for (uint32_t i = begin; i < end; i++)
         b->points[i] = b->scratch[i];
 }
@@ -73,7 +73,8 @@ static void sort_points(builder *b, uint32_t begin, uint32_t end, vec3 middle, u
  * the gamma distribution whose shape is 1. */
 static float smooth_count(uint32_t count, float around) { return around * ((float)count + 1.0f) / (around + 1.0f); }
 
-/* around: how many points there would be if those of the cube above were spread over its surface. */
+/* Makes the nodes below a node that holds the points from begin to end, in a cube. around: how many points there would
+ * be if those of the cube above were spread over its surface. Returns false where memory runs out. */
 static bool divide(builder *b, uint32_t node, uint32_t begin, uint32_t end, vec3 corner, float size, float around,
                    int depth)
 {
@@ -112,19 +113,19 @@ static ag_status build(const query_point *points, uint32_t count, float unit, bo
 {
     importance_map made = {0};
     set_cube(low, high, &made);
-    builder b = {.capacity = WAYS + 1024, .count = WAYS, .unit = unit, .is_smooth = is_smooth};
+    builder b = {.capacity = FACES + 1024, .count = FACES, .unit = unit, .is_smooth = is_smooth};
     b.nodes = calloc(b.capacity, sizeof *b.nodes);
     b.points = malloc(count * sizeof *b.points);
     b.scratch = malloc(count * sizeof *b.scratch);
     bool is_made = b.nodes && b.points && b.scratch;
-    for (uint32_t way = 0; is_made && way < WAYS; way++) {
-        uint32_t facing = 0;
+    for (uint32_t face = 0; is_made && face < FACES; face++) {
+        uint32_t facing_count = 0;
         for (uint32_t i = 0; i < count; i++) {
-            float along = component(points[i].normal, (int)way / 2);
-            if ((way % 2 ? -along : along) > WAY_COSINE)
-                b.points[facing++] = points[i].position;
+            float along = component(points[i].normal, (int)face / 2);
+            if ((face % 2 ? -along : along) > FACE_COSINE)
+                b.points[facing_count++] = points[i].position;
         }
-        is_made = divide(&b, way, 0, facing, made.corner, made.size, (float)facing, 0);
+        is_made = divide(&b, face, 0, facing_count, made.corner, made.size, (float)facing_count, 0);
     }
     free(b.points);
     free(b.scratch);

@@ -7,8 +7,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The bits of a cell's word that tell which ways there are; and the cells of a worker's turn. */
-enum { WAYS = 6, CELLS_AT_ONCE = 16 };
+/* A cube's faces, by which normals are divided: a cell's word has a bit for each. */
+enum { FACES = 6 };
+/* The cells of a worker's turn. */
+enum { CELLS_AT_ONCE = 16 };
 /* The least number of photons of a histogram, and the number at which it has half of its largest weight. */
 enum { LEAST = 8 };
 static const float FEW = 64.0f;
@@ -18,9 +20,9 @@ static const float SPREAD = 0.5f;
 /* Bound of a photon's flux, which keeps sums finite. */
 static const float FLUX_MAX = 1e30f;
 
-/* The axis that a normal is nearest to, and on which side; the borders lie a little beside those of a cube, where
- * surfaces are that are turned by just half a right angle, and photons' rounded normals would go either way. */
-static uint32_t way_of(vec3 normal)
+/* Returns the face of a cube that a normal points to, nearly: the borders lie a little beside a cube's own, where
+ * surfaces are that are turned by just half a right angle, and photons' rounded normals would go to either side. */
+static uint32_t face_of(vec3 normal)
 {
     float x = 1.06f * fabsf(normal.x), y = 1.03f * fabsf(normal.y), z = fabsf(normal.z);
     if (x >= y && x >= z)
@@ -30,31 +32,32 @@ static uint32_t way_of(vec3 normal)
     return 4 + (normal.z < 0.0f);
 }
 
-/* Turns little where the normal does, as long as the way is the same: frame_from_z has a seam through four axes. */
-static frame frame_around(vec3 normal, uint32_t way)
+/* Returns a frame around the normal. It turns little where the normal does, as long as the face is the same:
+ * frame_from_z has a seam through four axes. */
+static frame frame_around(vec3 normal, uint32_t face)
 {
-    static const vec3 axes[WAYS / 2] = {{0.0f, 1.0f, 0.0f}, {0.0f, 0.0f, 1.0f}, {1.0f, 0.0f, 0.0f}};
-    vec3 axis = axes[way / 2];
+    static const vec3 axes[FACES / 2] = {{0.0f, 1.0f, 0.0f}, {0.0f, 0.0f, 1.0f}, {1.0f, 0.0f, 0.0f}};
+    vec3 axis = axes[face / 2];
     vec3 x = vec3_normalize(vec3_add_scaled(axis, normal, -vec3_dot(axis, normal)));
     return (frame){x, vec3_cross(normal, x), normal};
 }
 
-/* A photon's normal, kept for the next photon, which often has the same one. */
-typedef struct facing {
-    uint32_t code; /* FACING_NONE: there was none */
-    uint32_t way;
+/* What follows from a photon's normal, kept for the next photon, which often has the same one. */
+typedef struct kept_normal {
+    uint32_t code; /* of the normal; NORMAL_NONE: there was none */
+    uint32_t face;
     frame around;
-} facing;
-#define FACING_NONE UINT32_MAX
+} kept_normal;
+#define NORMAL_NONE UINT32_MAX
 
-static void face(facing *f, uint16_t code)
+static void keep_normal(kept_normal *f, uint16_t code)
 {
     if (f->code == code)
         return;
     vec3 normal = direction_decode(code);
     f->code = code;
-    f->way = way_of(normal);
-    f->around = frame_around(normal, f->way);
+    f->face = face_of(normal);
+    f->around = frame_around(normal, f->face);
 }
 
 /* The inverse of sample_disk_concentric, nearly: which bin a photon counts in need not be right to the edge. */
@@ -102,20 +105,20 @@ static uint16_t arrival_of(const incident_light *l, uint32_t i)
     return l->tree.blocks[i / PHOTON_BLOCK_LANES].direction[i % PHOTON_BLOCK_LANES];
 }
 
-static void find_ways(void *user, uint64_t begin, uint64_t end, uint64_t block, unsigned worker)
+static void find_faces(void *user, uint64_t begin, uint64_t end, uint64_t block, unsigned worker)
 {
     (void)block, (void)worker;
     const job *j = user;
-    facing f = {.code = FACING_NONE};
+    kept_normal f = {.code = NORMAL_NONE};
     for (uint64_t cell = begin; cell < end; cell++) {
         range r = cell_photons(j->light, cell);
-        uint32_t counts[WAYS] = {0}, mask = 0;
+        uint32_t counts[FACES] = {0}, mask = 0;
         for (uint32_t i = r.begin; i < r.end; i++)
             if (arrival_is_diffuse(arrival_of(j->light, i))) {
-                face(&f, photon_block_normal(j->light->tree.blocks, i));
-                counts[f.way]++;
+                keep_normal(&f, photon_block_normal(j->light->tree.blocks, i));
+                counts[f.face]++;
             }
-        for (int w = 0; w < WAYS; w++)
+        for (int w = 0; w < FACES; w++)
             mask |= (uint32_t)(counts[w] >= LEAST) << w;
         j->light->cells[cell] = mask;
     }
@@ -134,8 +137,9 @@ static void spread(const float flux[INCIDENT_BINS], float out_flux[INCIDENT_BINS
         }
 }
 
-/* share < 1: the even remainder makes every bin wider than a step of its lower bound. */
-static void finish(const float flux[INCIDENT_BINS], float share, incident_histogram *out)
+/* Makes a histogram of the photons' flux in each bin, which counts by that share, < 1: the even remainder makes every
+ * bin wider than a step of its lower bound. */
+static void make_histogram(const float flux[INCIDENT_BINS], float share, incident_histogram *out)
 {
     float smooth[INCIDENT_BINS];
     double sum = 0.0, before = 0.0;
@@ -149,37 +153,37 @@ static void finish(const float flux[INCIDENT_BINS], float share, incident_histog
     }
 }
 
-static void count_in(const job *j, uint32_t photon_index, facing *f, float flux[WAYS][INCIDENT_BINS],
-                     uint32_t counts[WAYS])
+static void add_photon(const job *j, uint32_t photon_index, kept_normal *f, float flux[FACES][INCIDENT_BINS],
+                       uint32_t counts[FACES])
 {
     const photon_block *blocks = j->light->tree.blocks;
     uint16_t code = arrival_of(j->light, photon_index);
     if (!arrival_is_diffuse(code))
         return;
-    face(f, photon_block_normal(blocks, photon_index));
+    keep_normal(f, photon_block_normal(blocks, photon_index));
     vec3 going = arrival_direction(code);
     vec2 u = square_from_disk(-vec3_dot(going, f->around.x), -vec3_dot(going, f->around.y));
     rgb carried = flux_decode(photon_block_flux(blocks, photon_index));
-    flux[f->way][bin_at(u.x) * INCIDENT_SIDE + bin_at(u.y)] += fminf(carried.r + carried.g + carried.b, FLUX_MAX);
-    counts[f->way]++;
+    flux[f->face][bin_at(u.x) * INCIDENT_SIDE + bin_at(u.y)] += fminf(carried.r + carried.g + carried.b, FLUX_MAX);
+    counts[f->face]++;
 }
 
-static void fill(void *user, uint64_t begin, uint64_t end, uint64_t block, unsigned worker)
+static void fill_cells(void *user, uint64_t begin, uint64_t end, uint64_t block, unsigned worker)
 {
     (void)block, (void)worker;
     const job *j = user;
-    facing f = {.code = FACING_NONE};
+    kept_normal f = {.code = NORMAL_NONE};
     for (uint64_t cell = begin; cell < end; cell++) {
         range r = cell_photons(j->light, cell);
-        uint32_t counts[WAYS] = {0}, entry = j->light->cells[cell];
-        float flux[WAYS][INCIDENT_BINS];
+        uint32_t counts[FACES] = {0}, entry = j->light->cells[cell];
+        float flux[FACES][INCIDENT_BINS];
         memset(flux, 0, sizeof flux);
         for (uint32_t i = r.begin; i < r.end; i++)
-            count_in(j, i, &f, flux, counts);
-        incident_histogram *out = &j->light->histograms[entry >> WAYS];
-        for (int way = 0; way < WAYS; way++)
-            if (entry >> way & 1)
-                finish(flux[way], j->share * (float)counts[way] / ((float)counts[way] + FEW), out++);
+            add_photon(j, i, &f, flux, counts);
+        incident_histogram *out = &j->light->histograms[entry >> FACES];
+        for (int face = 0; face < FACES; face++)
+            if (entry >> face & 1)
+                make_histogram(flux[face], j->share * (float)counts[face] / ((float)counts[face] + FEW), out++);
     }
 }
 
@@ -195,17 +199,17 @@ ag_status incident_light_create(run_context *run, const photon_tree *tree, float
     if (!made.cells)
         return AG_ERROR_MEMORY;
     job j = {&made, share};
-    ag_status status = parallel_for(run, cell_count, CELLS_AT_ONCE, find_ways, &j, AG_PHASE_MAP, 0.0, 0.0);
+    ag_status status = parallel_for(run, cell_count, CELLS_AT_ONCE, find_faces, &j, AG_PHASE_MAP, 0.0, 0.0);
     for (uint32_t i = 0; i < cell_count && status == AG_OK; i++) {
-        uint32_t ways = made.cells[i];
-        made.cells[i] |= made.histogram_count << WAYS;
-        made.histogram_count += (uint32_t)__builtin_popcount(ways);
+        uint32_t faces = made.cells[i];
+        made.cells[i] |= made.histogram_count << FACES;
+        made.histogram_count += (uint32_t)__builtin_popcount(faces);
     }
     if (status == AG_OK &&
         !(made.histograms = large_alloc(((size_t)made.histogram_count + 1) * sizeof *made.histograms)))
         status = AG_ERROR_MEMORY;
     if (status == AG_OK)
-        status = parallel_for(run, cell_count, CELLS_AT_ONCE, fill, &j, AG_PHASE_MAP, 0.0, 0.0);
+        status = parallel_for(run, cell_count, CELLS_AT_ONCE, fill_cells, &j, AG_PHASE_MAP, 0.0, 0.0);
     if (status != AG_OK)
         incident_light_reset(&made);
     *out_light = made;
@@ -216,19 +220,19 @@ static void visit_cells(void *user, uint64_t begin, uint64_t end, uint64_t block
 {
     (void)block, (void)worker;
     const visit_job *j = user;
-    uint32_t photons[WAYS][INCIDENT_CELL_MAX];
-    facing f = {.code = FACING_NONE};
+    uint32_t photons[FACES][INCIDENT_CELL_MAX];
+    kept_normal f = {.code = NORMAL_NONE};
     for (uint64_t cell = begin; cell < end; cell++) {
         range r = cell_photons(j->light, cell);
-        uint32_t counts[WAYS] = {0}, entry = j->light->cells[cell], histogram = entry >> WAYS;
+        uint32_t counts[FACES] = {0}, entry = j->light->cells[cell], histogram = entry >> FACES;
         for (uint32_t i = r.begin; i < r.end; i++)
             if (arrival_is_diffuse(arrival_of(j->light, i))) {
-                face(&f, photon_block_normal(j->light->tree.blocks, i));
-                photons[f.way][counts[f.way]++] = i;
+                keep_normal(&f, photon_block_normal(j->light->tree.blocks, i));
+                photons[f.face][counts[f.face]++] = i;
             }
-        for (int way = 0; way < WAYS; way++)
-            if (entry >> way & 1)
-                j->fn(j->user, histogram++, photons[way], counts[way]);
+        for (int face = 0; face < FACES; face++)
+            if (entry >> face & 1)
+                j->fn(j->user, histogram++, photons[face], counts[face]);
     }
 }
 
@@ -257,28 +261,29 @@ bool incident_light_find(const incident_light *l, vec3 position, vec3 normal, in
     if (!l->cells)
         return false;
     const float at[3] = {position.x, position.y, position.z};
-    uint32_t base = (1u << l->cell_depth) - 1, node = 0, way = way_of(normal);
+    uint32_t base = (1u << l->cell_depth) - 1, node = 0, face = face_of(normal);
     while (node < base) {
         photon_tree_node n = l->tree.nodes[node];
         node = 2 * node + 1 + (at[n.axis] >= n.split);
     }
     uint32_t entry = l->cells[node - base];
-    if (!(entry >> way & 1))
+    if (!(entry >> face & 1))
         return false;
-    uint32_t before = (uint32_t)__builtin_popcount(entry & ((1u << way) - 1));
-    *out_guide = (incident_guide){frame_around(normal, way), &l->histograms[(entry >> WAYS) + before]};
+    uint32_t before = (uint32_t)__builtin_popcount(entry & ((1u << face) - 1));
+    *out_guide = (incident_guide){frame_around(normal, face), &l->histograms[(entry >> FACES) + before]};
     return true;
 }
 
-/* In what [low, high) of ascending beginnings, which end at INCIDENT_ONE, a number falls, and in the how-manieth. */
-typedef struct step {
-    uint32_t number;
+/* The one of consecutive intervals [low, high) that a number falls in. */
+typedef struct interval {
+    uint32_t number; /* of the interval, from 0 on */
     float low, high;
-} step;
+} interval;
 
-static step find_step(const float begins[INCIDENT_SIDE], float end, float x)
+/* Finds the interval of x among those that begin at `begins`, the last of which ends at `end`. */
+static interval find_interval(const float begins[INCIDENT_SIDE], float end, float x)
 {
-    step s = {0, begins[0], end};
+    interval s = {0, begins[0], end};
     for (uint32_t i = 1; i < INCIDENT_SIDE; i++) {
         s.number += begins[i] <= x;
         s.low = begins[i] <= x ? begins[i] : s.low;
@@ -295,11 +300,11 @@ float incident_guide_warp_one(const incident_guide *guide, vec2 *in_out_u)
     float rows[INCIDENT_SIDE], bins[INCIDENT_SIDE], x = in_out_u->x * INCIDENT_ONE;
     for (int i = 0; i < INCIDENT_SIDE; i++)
         rows[i] = h->begins[0][i];
-    step row = find_step(rows, INCIDENT_ONE, x);
+    interval row = find_interval(rows, INCIDENT_ONE, x);
     for (int i = 0; i < INCIDENT_SIDE; i++)
         bins[i] = h->begins[i][row.number];
     float y = row.low + in_out_u->y * (row.high - row.low);
-    step bin = find_step(bins, row.high, y);
+    interval bin = find_interval(bins, row.high, y);
     in_out_u->x = fminf(((float)row.number + (x - row.low) / (row.high - row.low)) * BIN_WIDTH, BELOW_ONE);
     in_out_u->y = fminf(((float)bin.number + (y - bin.low) / (bin.high - bin.low)) * BIN_WIDTH, BELOW_ONE);
     return (float)(INCIDENT_ONE / INCIDENT_BINS) / (bin.high - bin.low);
@@ -332,12 +337,13 @@ static void warp_plain(const incident_guide *guide, uint32_t count, float u[2][I
 #if defined(__x86_64__)
 #include "avx2.h"
 
-/* find_step for eight: begins and end of each. */
-typedef struct step_8 {
+/* Eight intervals. */
+typedef struct interval_8 {
     __m256 number, low, high;
-} step_8;
+} interval_8;
 
-AVX2 static inline void try_begin(step_8 *s, __m256 begin, __m256 x)
+/* Takes the interval that begins at `begin` for those numbers that are in it or beyond: find_interval, step by step. */
+AVX2 static inline void try_begin(interval_8 *s, __m256 begin, __m256 x)
 {
     __m256 is_passed = _mm256_cmp_ps(begin, x, _CMP_LE_OQ);
     s->number = _mm256_add_ps(s->number, _mm256_and_ps(is_passed, _mm256_set1_ps(1.0f)));
@@ -347,7 +353,7 @@ AVX2 static inline void try_begin(step_8 *s, __m256 begin, __m256 x)
 }
 
 /* The coordinate along the unit square's side, from a bin's number and the position in it. */
-AVX2 static inline __m256 coordinate_in(step_8 s, __m256 x)
+AVX2 static inline __m256 coordinate_in(interval_8 s, __m256 x)
 {
     __m256 share = _mm256_div_ps(_mm256_sub_ps(x, s.low), _mm256_sub_ps(s.high, s.low));
     __m256 u = _mm256_mul_ps(_mm256_add_ps(s.number, share), _mm256_set1_ps(BIN_WIDTH));
@@ -364,12 +370,12 @@ AVX2 static void warp_avx2(const incident_guide *guide, uint32_t count, float u[
     }
     for (uint32_t i = 0; i < count; i += 8) {
         __m256 x = _mm256_mul_ps(_mm256_loadu_ps(&u[0][i]), one);
-        step_8 row = {_mm256_setzero_ps(), _mm256_setzero_ps(), one};
+        interval_8 row = {_mm256_setzero_ps(), _mm256_setzero_ps(), one};
         for (int k = 1; k < INCIDENT_SIDE; k++)
             try_begin(&row, _mm256_permutevar8x32_ps(columns[0], _mm256_set1_epi32(k)), x);
         __m256i number = _mm256_cvttps_epi32(row.number);
         __m256 y = _mm256_add_ps(row.low, _mm256_mul_ps(_mm256_loadu_ps(&u[1][i]), _mm256_sub_ps(row.high, row.low)));
-        step_8 bin = {_mm256_setzero_ps(), row.low, row.high};
+        interval_8 bin = {_mm256_setzero_ps(), row.low, row.high};
         for (int k = 1; k < INCIDENT_SIDE; k++)
             try_begin(&bin, _mm256_permutevar8x32_ps(columns[k], number), y);
         _mm256_storeu_ps(&u[0][i], coordinate_in(row, x));

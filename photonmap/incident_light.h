@@ -7,10 +7,10 @@
  * run's workers; then read-only.
  *
  * A cell is a run of neighbours in the map's order: the photons of a subtree. They are divided by the axis nearest to
- * their normal, six ways; other differences within a cell only cost some of the gain. Each of the six has a histogram
- * over the unit square that sample_cosine_hemisphere warps to directions. Flux already contains the cosine, so light
- * from all directions alike fills the histogram evenly, and no bin lies below the horizon. A share of each bin is
- * uniform, whatever the photons say. Directions are drawn from this mixture and weighted by its density (the balance
+ * their normal, and its side; other differences within a cell only cost some of the gain. Each of the six has a
+ * histogram over the unit square that sample_cosine_hemisphere warps to directions. Flux already contains the cosine,
+ * so light from all directions alike fills the histogram evenly, and no bin lies below the horizon. A share of each bin
+ * is uniform, whatever the photons say. Directions are drawn from this mixture and weighted by its density (the balance
  * heuristic), so no ray weighs more than 1 / that share. Photons straight from lamps are left out, since gather rays do
  * not bring their light. */
 #ifndef AFTERGLOW_INCIDENT_LIGHT_H
