@@ -21,14 +21,14 @@ typedef struct guard {
 
 static guard guards[GUARDS_MAX];
 static pthread_mutex_t handler_mutex = PTHREAD_MUTEX_INITIALIZER; /* who installs the handler */
-/* The handlers that ours has replaced: at last, which may call ours in turn, and at first, which cannot know of it. */
-static struct sigaction handled_before, handled_first;
+/* The handlers that ours has replaced: the last one, which may call ours in turn, and the first one, which cannot. */
+static struct sigaction replaced_last, replaced_first;
 static bool is_installed;
 static _Thread_local volatile sig_atomic_t is_passed_on; /* the fault is the other handler's */
 
-static void on_bus_error(int number, siginfo_t *info, void *context)
+/* Replaces the guarded memory that an address lies in by empty memory. Returns false where it lies in none. */
+static bool replace_lost(const char *at)
 {
-    const char *at = info->si_addr;
     for (int i = 0; i < GUARDS_MAX; i++) {
         guard *g = &guards[i];
         uint32_t state = load_acquire_u32(&g->state);
@@ -40,11 +40,16 @@ static void on_bus_error(int number, siginfo_t *info, void *context)
         store_release_u32(&g->state, GUARD_LOST);
         if (mmap(g->memory, g->size_bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_FIXED, -1, 0) !=
             MAP_FAILED)
-            return;
+            return true;
     }
-    /* not ours: as if this handler were not there */
+    return false;
+}
+
+/* Does with a fault elsewhere what would be done if our handler were not there. */
+static void pass_on(int number, siginfo_t *info, void *context)
+{
     const sig_atomic_t was_passed_on = is_passed_on;
-    const struct sigaction *other = was_passed_on ? &handled_first : &handled_before;
+    const struct sigaction *other = was_passed_on ? &replaced_first : &replaced_last;
     if (!(other->sa_flags & SA_SIGINFO) && (other->sa_handler == SIG_DFL || other->sa_handler == SIG_IGN)) {
         signal(number, SIG_DFL);
         raise(number);
@@ -58,7 +63,13 @@ static void on_bus_error(int number, siginfo_t *info, void *context)
     is_passed_on = was_passed_on;
 }
 
-/* Others may have put theirs in its place since the last mapping. */
+static void on_bus_error(int number, siginfo_t *info, void *context)
+{
+    if (!replace_lost(info->si_addr))
+        pass_on(number, info, context);
+}
+
+/* Installs our handler, also where another one has replaced it since the last mapping was guarded. */
 static void install_handler(void)
 {
     struct sigaction action = {.sa_sigaction = on_bus_error, .sa_flags = SA_SIGINFO | SA_RESTART}, now;
@@ -66,9 +77,9 @@ static void install_handler(void)
     pthread_mutex_lock(&handler_mutex);
     if (sigaction(SIGBUS, NULL, &now) == 0 && !(now.sa_flags & SA_SIGINFO && now.sa_sigaction == on_bus_error)) {
         if (!is_installed)
-            handled_first = now;
+            replaced_first = now;
         is_installed = true;
-        handled_before = now;
+        replaced_last = now;
         sigaction(SIGBUS, &action, NULL);
     }
     pthread_mutex_unlock(&handler_mutex);

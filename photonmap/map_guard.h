@@ -7,8 +7,8 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-/* Guards a mapping; returns its number, or -1 where too many are guarded. Installs a SIGBUS handler where it is not
- * there, which passes faults elsewhere on to the one before. */
+/* Guards a mapping; returns the guard's number, or -1 where 64 mappings are guarded already. Installs a SIGBUS handler
+ * where it is not there, which passes faults elsewhere on to the one before. */
 int map_guard_add(void *memory, size_t size_bytes);
 /* Ends the guard; to be called before the memory is unmapped. -1 is fine. */
 void map_guard_remove(int guard);

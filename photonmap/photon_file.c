@@ -54,22 +54,22 @@ static photon_map map_of(const photon_file_map *m, photon_tree tree, photon_tree
  * are not there. Trees are no deeper than their leaves need, so that twice the file is room for all of them. */
 static size_t reserved_bytes(const photon_file *file) { return 2 * file->size_bytes + 2 * PHOTON_FILE_PAGE; }
 
-/* Reserves the room, which reads as zeros; NULL: there is none. */
-static void *reserve(const photon_file *file)
+/* Reserves memory for the file and what lies behind it, which reads as zeros. Returns NULL where there is none. */
+static void *reserve_memory(const photon_file *file)
 {
     void *memory =
         mmap(NULL, reserved_bytes(file), PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
     return memory == MAP_FAILED ? NULL : memory;
 }
 
-/* Maps it, and takes an entry among its owners. message: where not, why. */
-static bool share(int descriptor, photon_file *file, char *message, size_t message_size)
+/* Maps the file, and takes an entry among its owners. message: where not, why. */
+static bool map_shared(int descriptor, photon_file *file, char *message, size_t message_size)
 {
     if (file_system_is_network(descriptor)) {
         snprintf(message, message_size, "it is on a network's file system");
         return false;
     }
-    void *memory = reserve(file);
+    void *memory = reserve_memory(file);
     if (!memory ||
         mmap(memory, file->size_bytes, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_FIXED, descriptor, 0) == MAP_FAILED) {
         snprintf(message, message_size, "it cannot be mapped: %s", strerror(errno));
@@ -90,12 +90,12 @@ static bool share(int descriptor, photon_file *file, char *message, size_t messa
     return true;
 }
 
-/* Reads it into memory: a private mapping would still show what others write to pages that are not touched yet, claims
- * among it, whose values then never come. */
-static photon_file_result copy(const run_context *run, int descriptor, photon_file *file, char *message,
-                               size_t message_size)
+/* Reads the file into memory: a private mapping would still show what others write to pages that are not touched yet,
+ * claims among it, whose values then never come. */
+static photon_file_result read_copy(const run_context *run, int descriptor, photon_file *file, char *message,
+                                    size_t message_size)
 {
-    char *memory = reserve(file);
+    char *memory = reserve_memory(file);
     if (!memory) {
         snprintf(message, message_size, "out of memory");
         return PHOTON_FILE_FAILED;
@@ -150,11 +150,11 @@ static photon_file_result open_maps(const run_context *run, int descriptor, cons
 {
     file->size_bytes = (size_t)h->file_bytes;
     file->nonce = h->nonce;
-    if (!may_share || !share(descriptor, file, message, message_size)) {
+    if (!may_share || !map_shared(descriptor, file, message, message_size)) {
         if (!may_share)
             snprintf(message, message_size, "it may not be written");
         char wrong[256];
-        photon_file_result result = copy(run, descriptor, file, wrong, sizeof wrong);
+        photon_file_result result = read_copy(run, descriptor, file, wrong, sizeof wrong);
         if (result != PHOTON_FILE_OPEN) {
             snprintf(message, message_size, "%s", wrong);
             return result;
