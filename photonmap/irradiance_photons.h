@@ -20,7 +20,8 @@ uint32_t irradiance_photons_runs(uint32_t photon_count, float fraction);
 
 /* Picks the irradiance photons of a tree. They are copies with empty slots, and with the photon's index in place of the
  * flux. Each represents the photons within `reach` whose normals have a cosine above min_cos to its own. The caller
- * owns tree and blocks: photon_tree_reset, and free for the blocks. Errors: AG_ERROR_MEMORY, AG_CANCELLED. */
+ * owns tree and blocks: photon_tree_reset, and free for the blocks. progress: of AG_PHASE_MAP, which stays as it is
+ * meanwhile. Errors: AG_ERROR_MEMORY, AG_CANCELLED. */
 ag_status irradiance_photons_create(run_context *run, const photon_tree *photons, float fraction, float reach,
                                     float min_cos, double progress, photon_tree *out_irradiance_photons);
 

@@ -248,14 +248,14 @@ uint64_t photon_map_spaces_bytes(const scene *s, uint64_t photon_count)
     return photon_count > 0 && clear_space_is_told(s) ? clear_spaces_bytes(photon_block_count(photon_count)) : 0;
 }
 
-void photon_map_make_spaces(photon_map *map, uint64_t spare)
+void photon_map_make_spaces(photon_map *map, uint64_t spare_bytes)
 {
     if (map->spaces || !map->surfaces || photon_map_spaces_bytes(map->surfaces, map->set.count) == 0)
         return;
     map->spaces = clear_spaces_create(map->surfaces, map->blocks, photon_block_count(map->set.count),
                                       SPACE_RADII * map->mean_radius);
     /* a limit of memory counts what is reserved, too; without spaces the picture is the same */
-    void *volatile later = malloc((size_t)spare); /* volatile: or the compiler takes it to succeed */
+    void *volatile later = malloc((size_t)spare_bytes); /* volatile: or the compiler takes it to succeed */
     if (!later)
         photon_map_drop_spaces(map);
     free(later);

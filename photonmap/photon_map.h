@@ -49,7 +49,7 @@ typedef struct photon_map {
 } photon_map;
 
 /* Builds a map from the set's photons, which it takes over, and frees on failure. A map without photons is valid: its
- * irradiance is 0 everywhere. Errors: AG_ERROR_MEMORY, AG_CANCELLED. */
+ * irradiance is 0 everywhere. progress: of AG_PHASE_MAP. Errors: AG_ERROR_MEMORY, AG_CANCELLED. */
 ag_status photon_map_create(run_context *run, photon_set *set, const photon_map_settings *settings,
                             double progress_begin, double progress_end, photon_map *out_map);
 void photon_map_reset(photon_map *map);
@@ -86,9 +86,9 @@ uint64_t photon_map_count_ready(const photon_map *map);
 uint64_t photon_map_bytes(const photon_map *map);
 
 /* Allocates the clear spaces, unless the map has them. It does nothing where the map has no photons or no surfaces,
- * where nothing is known of what is near them (clear_space_is_told), or where fewer than `spare` bytes would be left
+ * where nothing is known of what is near them (clear_space_is_told), or where fewer than spare_bytes would be left
  * for later allocations. */
-void photon_map_make_spaces(photon_map *map, uint64_t spare);
+void photon_map_make_spaces(photon_map *map, uint64_t spare_bytes);
 void photon_map_drop_spaces(photon_map *map);
 
 /* Returns the bytes that photon_map_make_spaces takes for that many photons on the surfaces of s. */

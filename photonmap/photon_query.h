@@ -1,5 +1,5 @@
-/* photon_query.h: a way through the photon tree: the query, what is still to visit, and which normals count. Private
- * to the searches. Rests on: Arya, Mount, "Algorithms for Fast Vector Quantization", 1993.
+/* photon_query.h: a way through the photon tree: the query, what is still to visit, and which normals count. For
+ * searches of photons alone. Rests on: Arya, Mount, "Algorithms for Fast Vector Quantization", 1993.
  * Depth first, near side first; a stack entry carries its box's offset from the query along each axis.
  * Threads: a query belongs to one. */
 #ifndef AFTERGLOW_PHOTON_QUERY_H

@@ -31,8 +31,9 @@ typedef struct photon_tree {
 } photon_tree;
 
 /* Builds a tree from records of photon_records_create. The records are reordered, so that their indices change, and
- * become the tree's blocks in place; on failure they are lost. Deterministic: equal input gives equal order for any
- * number of threads. phase and progress as in parallel_for. Errors: AG_ERROR_MEMORY, AG_CANCELLED. */
+ * become the tree's blocks in place; on failure they are lost, but not freed. Deterministic: equal input gives equal
+ * order for any number of threads. progress: of AG_PHASE_MAP, as in parallel_for. Errors: AG_ERROR_MEMORY,
+ * AG_CANCELLED. */
 ag_status photon_tree_build(run_context *run, photon *photons, uint32_t count, double progress_begin,
                             double progress_end, photon_tree *out_tree);
 void photon_tree_reset(photon_tree *tree);
@@ -85,8 +86,10 @@ void photon_walk_init(photon_walk *walk, const photon_tree *tree); /* borrows th
 uint32_t photon_walk_nearest(photon_walk *walk, uint32_t leaf, vec3 position, vec3 normal, float min_cos, float radius,
                              float *out_distance_squared);
 
-/* A point of a lookup: position, unit normal, and its photon_tree_leaf. */
+/* Most lookups at once. */
 enum { PHOTON_LOOKUPS_MAX = 64 };
+
+/* A point of a lookup: position, unit normal, and its photon_tree_leaf. */
 typedef struct photon_lookup {
     vec3 position, normal;
     uint32_t leaf;
