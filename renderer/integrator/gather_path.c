@@ -27,14 +27,21 @@ typedef struct traced_start {
     float pdf;             /* of the ray that left it, 1/sr; 0: by a smooth lobe, for which no shadow ray can stand */
 } traced_start;
 
-/* Returns the radiance that the ray meets at a surface, weighted against shadow rays from where it was traced on. */
-static rgb traced_emission(const transport *t, const traced_start *from, const vertex *v)
-{
-    rgb emitted = from->is_set ? vertex_emission(t->s, v) : rgb_gray(0.0f);
-    if (rgb_is_black(emitted) || !(from->pdf > 0.0f))
-        return emitted;
-    return rgb_scale(emitted, direct_light_scatter_weight(t, from->position, from->normal, v, from->pdf, 1, 1.0f));
-}
+/* A gather ray on its way. */
+typedef struct gather_ray {
+    rng random;
+    rgb start_throughput; /* from the ray's start to where its light is wanted */
+    rgb throughput;       /* from the ray's end to its start; roulette goes by this alone */
+    float travelled;      /* since its start or its last short bounce, scene units */
+    int short_bounces;    /* by diffuse surfaces too near for the cache */
+    int scatterings;      /* but straight through panes */
+    int scatterings_left; /* between the lamp and the ray's last start */
+    int in_media;         /* scatterings by media */
+    traced_start traced;
+} gather_ray;
+
+/* Returns what the light at the ray's end is multiplied by. */
+static rgb whole_throughput(const gather_ray *g) { return rgb_mul(g->start_throughput, g->throughput); }
 
 /* Ends the ray at a diffuse vertex with the irradiance on one side of it, which is picked by the lobes' shares. */
 static void end_at(const transport *t, const vertex *v, int scatterings_left, rgb throughput, float u_side,
@@ -54,78 +61,116 @@ static void end_at(const transport *t, const vertex *v, int scatterings_left, rg
     *out_weight = rgb_scale(rgb_mul(throughput, factor), AG_INV_PI);
 }
 
-bool gather_path_follow(const transport *t, eye_worker *worker, vertex *v, rng random, int scatterings_left, rgb first,
-                        float share_seen, rgb *in_out_known, gather_end *out_end, rgb *out_weight)
+/* Takes the ray to the vertex that it has met, and adds what shines there to *in_out_known, weighted against shadow
+ * rays from where the ray was traced on. */
+static void arrive(const transport *t, gather_ray *g, vertex *v, rgb *in_out_known)
 {
-    rgb throughput = rgb_gray(1.0f);
-    float travelled = 0.0f;
-    int short_bounces = 0, left = scatterings_left;
-    traced_start start = {.is_set = false};
-    int in_media = 0; /* how often media have scattered the ray */
-    for (int depth = 0;;) {
-        throughput = rgb_mul(throughput, v->transmittance);
-        travelled += v->hit.distance;
-        bool is_far = travelled >= t->gather_min_distance || short_bounces == SHORT_BOUNCES_MAX;
-        transport_complete(t, v);
-        if (start.is_set)
-            *in_out_known = rgb_add(*in_out_known, rgb_mul(rgb_mul(first, throughput), traced_emission(t, &start, v)));
-        float u_lobe = rng_float(&random), u_group = rng_float(&random);
-        vec2 u = rng_vec2(&random);
+    const traced_start *from = &g->traced;
+    g->throughput = rgb_mul(g->throughput, v->transmittance);
+    g->travelled += v->hit.distance;
+    transport_complete(t, v);
+    if (!from->is_set)
+        return;
+    rgb emitted = vertex_emission(t->s, v);
+    if (!rgb_is_black(emitted) && from->pdf > 0.0f)
+        emitted =
+            rgb_scale(emitted, direct_light_scatter_weight(t, from->position, from->normal, v, from->pdf, 1, 1.0f));
+    *in_out_known = rgb_add(*in_out_known, rgb_mul(whole_throughput(g), emitted));
+}
 
-        /* one group of lobes, picked by its share */
-        float gathered_share = bsdf_probability(&v->scattering, BSDF_GATHERED);
-        bsdf_lobes lobes = u_group < gathered_share ? BSDF_GATHERED : BSDF_TRACED;
-        throughput = rgb_scale(throughput, 1.0f / (lobes == BSDF_GATHERED ? gathered_share : 1.0f - gathered_share));
-        if (lobes == BSDF_GATHERED) {
-            if (is_far) {
-                end_at(t, v, left, rgb_mul(first, throughput), u_lobe, out_end, out_weight);
-                return true;
-            }
-            /* an estimate is blurred over about that distance, which is too coarse so near */
-            rgb weight = rgb_mul(first, throughput);
-            rgb local = local_light(t, worker, v, share_seen * rgb_max(weight), &random);
-            *in_out_known = rgb_add(*in_out_known, rgb_mul(weight, local));
-            travelled = 0.0f;
-            short_bounces++;
-            start.is_set = false;
-        }
-        bool counts = !v->is_in_medium || t->media_are_bounded;
-        in_media += v->is_in_medium;
-        bool is_last = (counts && left == 1) || in_media == MEDIUM_SCATTERINGS_MAX;
-        bool is_traced = lobes == BSDF_TRACED && (v->is_in_medium || start.is_set);
-        if (is_traced && bsdf_is_sampled_from_light(&v->scattering, BSDF_TRACED)) {
-            float u_pick = rng_float(&random);
-            rgb direct =
-                direct_light_from_lamp(t, worker, v, BSDF_TRACED, u_pick, rng_vec2(&random), 1, is_last ? 0.0f : 1.0f);
-            *in_out_known = rgb_add(*in_out_known, rgb_mul(rgb_mul(first, throughput), direct));
-        }
-        bsdf_sample next;
-        if (!bsdf_sample_direction(&v->scattering, lobes, BSDF_RADIANCE, u_lobe, u, &next))
-            return false;
-        throughput = rgb_mul(throughput, next.weight);
-        if ((depth >= ROULETTE_AFTER || lobes == BSDF_GATHERED) &&
-            !transport_survives(&throughput, in_media, rng_float(&random)))
-            return false;
-        bool goes_straight = transport_is_open_pane(t, v) && next.is_straight;
-        depth += !goes_straight;
-        left -= counts && !goes_straight;
-        if (left == 0 || (v->is_in_medium && is_last))
-            return false;
-        scene_ray ray = goes_straight ? vertex_ray_straight(v) : transport_scattered_ray(t, v, next.direction, true);
-        ray.skips_uv = true;
-        worker->rays_gather++;
-        if (is_traced && !goes_straight)
-            start = (traced_start){true, vertex_position(v), vertex_light_normal(v, BSDF_TRACED),
-                                   next.is_delta ? 0.0f : next.pdf_solid_angle};
-        if (transport_travel_to(t, worker, ray, rgb_mul(first, throughput), &random, v))
-            continue;
-        if (start.is_set) {
-            rgb weight = rgb_mul(rgb_mul(first, throughput), v->transmittance);
-            *in_out_known =
-                rgb_add(*in_out_known, rgb_mul(weight, direct_light_escaped(t, start.position, start.normal,
-                                                                            ray.direction, start.pdf, 1, 1.0f, NULL)));
-        }
+/* Picks one group of lobes by its share. */
+static bsdf_lobes pick_group(gather_ray *g, const vertex *v, float u)
+{
+    float gathered_share = bsdf_probability(&v->scattering, BSDF_GATHERED);
+    bool is_gathered = u < gathered_share;
+    g->throughput = rgb_scale(g->throughput, 1.0f / (is_gathered ? gathered_share : 1.0f - gathered_share));
+    return is_gathered ? BSDF_GATHERED : BSDF_TRACED;
+}
+
+/* Adds direct light and caustics at a diffuse vertex too near for the cache, by which the ray bounces on. */
+static void begin_short_bounce(const transport *t, eye_worker *worker, gather_ray *g, const vertex *v, float share_seen,
+                               rgb *in_out_known)
+{
+    rgb weight = whole_throughput(g);
+    rgb local = local_light(t, worker, v, share_seen * rgb_max(weight), &g->random);
+    *in_out_known = rgb_add(*in_out_known, rgb_mul(weight, local));
+    g->travelled = 0.0f;
+    g->short_bounces++;
+    g->traced.is_set = false;
+}
+
+/* Sends the ray on from the vertex by these lobes, and adds the direct light that they scatter where the ray is traced
+ * as a path tracer's. Returns false where it ends: by the lobes, by roulette, or by the limit of scatterings. */
+static bool scatter(const transport *t, eye_worker *worker, gather_ray *g, const vertex *v, bsdf_lobes lobes,
+                    float u_lobe, vec2 u, rgb *in_out_known, scene_ray *out_ray)
+{
+    bool is_counted = !v->is_in_medium || t->media_are_bounded;
+    g->in_media += v->is_in_medium;
+    bool is_last = (is_counted && g->scatterings_left == 1) || g->in_media == MEDIUM_SCATTERINGS_MAX;
+    bool is_traced = lobes == BSDF_TRACED && (v->is_in_medium || g->traced.is_set);
+    if (is_traced && bsdf_is_sampled_from_light(&v->scattering, BSDF_TRACED)) {
+        float u_pick = rng_float(&g->random);
+        rgb direct =
+            direct_light_from_lamp(t, worker, v, BSDF_TRACED, u_pick, rng_vec2(&g->random), 1, is_last ? 0.0f : 1.0f);
+        *in_out_known = rgb_add(*in_out_known, rgb_mul(whole_throughput(g), direct));
+    }
+    bsdf_sample next;
+    if (!bsdf_sample_direction(&v->scattering, lobes, BSDF_RADIANCE, u_lobe, u, &next))
         return false;
+    g->throughput = rgb_mul(g->throughput, next.weight);
+    if ((g->scatterings >= ROULETTE_AFTER || lobes == BSDF_GATHERED) &&
+        !transport_survives(&g->throughput, g->in_media, rng_float(&g->random)))
+        return false;
+    bool goes_straight = transport_is_open_pane(t, v) && next.is_straight;
+    g->scatterings += !goes_straight;
+    g->scatterings_left -= is_counted && !goes_straight;
+    if (g->scatterings_left == 0 || (v->is_in_medium && is_last))
+        return false;
+    if (is_traced && !goes_straight)
+        g->traced = (traced_start){true, vertex_position(v), vertex_light_normal(v, BSDF_TRACED),
+                                   next.is_delta ? 0.0f : next.pdf_solid_angle};
+    *out_ray = goes_straight ? vertex_ray_straight(v) : transport_scattered_ray(t, v, next.direction, true);
+    out_ray->skips_uv = true;
+    return true;
+}
+
+/* Adds the light of infinite lights along a ray that has escaped, where it was traced as a path tracer's. */
+static void add_escaped(const transport *t, const gather_ray *g, vec3 direction, rgb transmittance, rgb *in_out_known)
+{
+    const traced_start *from = &g->traced;
+    if (!from->is_set)
+        return;
+    rgb escaped = direct_light_escaped(t, from->position, from->normal, direction, from->pdf, 1, 1.0f, NULL);
+    *in_out_known = rgb_add(*in_out_known, rgb_mul(rgb_mul(whole_throughput(g), transmittance), escaped));
+}
+
+bool gather_path_follow(const transport *t, eye_worker *worker, vertex *v, rng random, int scatterings_left,
+                        rgb throughput, float share_seen, rgb *in_out_known, gather_end *out_end, rgb *out_weight)
+{
+    gather_ray g = {.random = random,
+                    .start_throughput = throughput,
+                    .throughput = rgb_gray(1.0f),
+                    .scatterings_left = scatterings_left};
+    for (;;) {
+        arrive(t, &g, v, in_out_known);
+        bool is_near = g.travelled < t->gather_min_distance && g.short_bounces < SHORT_BOUNCES_MAX;
+        float u_lobe = rng_float(&g.random), u_group = rng_float(&g.random);
+        vec2 u = rng_vec2(&g.random);
+        bsdf_lobes lobes = pick_group(&g, v, u_group);
+        if (lobes == BSDF_GATHERED && !is_near) {
+            end_at(t, v, g.scatterings_left, whole_throughput(&g), u_lobe, out_end, out_weight);
+            return true;
+        }
+        if (lobes == BSDF_GATHERED) /* an estimate is blurred over about that distance, which is too coarse so near */
+            begin_short_bounce(t, worker, &g, v, share_seen, in_out_known);
+        scene_ray ray;
+        if (!scatter(t, worker, &g, v, lobes, u_lobe, u, in_out_known, &ray))
+            return false;
+        worker->rays_gather++;
+        if (!transport_travel_to(t, worker, ray, whole_throughput(&g), &g.random, v)) {
+            add_escaped(t, &g, ray.direction, v->transmittance, in_out_known);
+            return false;
+        }
     }
 }
 
