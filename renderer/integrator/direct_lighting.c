@@ -16,9 +16,6 @@ rgb direct_light_transmittance(const transport *t, eye_worker *worker, scene_ray
                                : transmittance_of_ray(t->s, shadow, reach, &worker->rays_cut);
 }
 
-/* Added to the vertex by which the number is drawn that decides whether there is a sample by scattering. */
-enum { KEY_OF_CHANCE = 1 << 30 };
-
 /* Picks the lamp for a point. *in_out_u become the numbers that sample it, *out_factor its density's factor. */
 static uint32_t pick_lamp(const transport *t, vec3 from, vec3 normal, float u_pick, vec2 *in_out_u, float *out_factor)
 {
@@ -165,8 +162,9 @@ static light_sums sample_scattering(const transport *t, eye_worker *worker, cons
 {
     light_sums sums = {rgb_gray(0.0f), 0.0f};
     const uint32_t count = (uint32_t)counts.scatter;
-    if (count == 0 || (counts.scatter_probability < 1.0f &&
-                       sampler_2d(where, SAMPLE_LOBE, path_vertex + KEY_OF_CHANCE).x >= counts.scatter_probability))
+    if (count == 0 ||
+        (counts.scatter_probability < 1.0f &&
+         sampler_2d(where, SAMPLE_LOBE, path_vertex + SAMPLER_KEY_CHANCE).x >= counts.scatter_probability))
         return sums;
     const float mean_count = mean_scatter_count(counts), share = 1.0f / mean_count;
     const vec3 from = vertex_position(v), normal = vertex_light_normal(v, BSDF_GATHERED);

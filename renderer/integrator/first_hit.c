@@ -1,9 +1,6 @@
 /* first_hit.c: see first_hit.h. */
 #include "integrator/first_hit.h"
 
-/* The index of a vertex that no path reaches: its random numbers are used for nothing else. */
-enum { ALBEDO_VERTEX = 1 << 20 };
-
 /* Returns the albedo of a vertex: of gathered lobes in closed form, of all others by one sample, whose mean is the
  * share of light that they reflect and let through (1 for glass, the metal's colour for metal). */
 static rgb albedo_at(const vertex *v, const sampler *where)
@@ -11,8 +8,9 @@ static rgb albedo_at(const vertex *v, const sampler *where)
     rgb sum = rgb_add(bsdf_gathered_reflection(&v->scattering), bsdf_gathered_transmission(&v->scattering));
     bsdf_sample next;
     if (bsdf_has(&v->scattering, BSDF_TRACED) &&
-        bsdf_sample_direction(&v->scattering, BSDF_TRACED, BSDF_FLUX, sampler_2d(where, SAMPLE_LOBE, ALBEDO_VERTEX).x,
-                              sampler_2d(where, SAMPLE_SCATTER, ALBEDO_VERTEX), &next))
+        bsdf_sample_direction(&v->scattering, BSDF_TRACED, BSDF_FLUX,
+                              sampler_2d(where, SAMPLE_LOBE, SAMPLER_KEY_ALBEDO).x,
+                              sampler_2d(where, SAMPLE_SCATTER, SAMPLER_KEY_ALBEDO), &next))
         sum = rgb_add(sum, next.weight);
     return (rgb){fminf(fmaxf(sum.r, 0.0f), 1.0f), fminf(fmaxf(sum.g, 0.0f), 1.0f), fminf(fmaxf(sum.b, 0.0f), 1.0f)};
 }

@@ -20,13 +20,13 @@ static bsdf_lobes pick_group(const vertex *v, float *in_out_u, rgb *in_out_throu
 
 void path_tracing_radiance(const transport *t, eye_worker *worker, const camera_sample *from, eye_sample *in_out)
 {
-    bool is_whole = t->settings->only == AG_ONLY_ALL;
+    bool wants_all = transport_wants_all_light(t);
     eye_path path = eye_path_begin(from, ROULETTE_AFTER, in_out->layers != NULL);
     for (;;) {
         vertex v;
         /* indirect light leaves out lamps that are seen, and light that falls straight on the first diffuse surface */
         bool has_met_diffuse = path.first_gathered > 0;
-        bool counts_emission = is_whole || (has_met_diffuse && path.first_gathered < path.scatterings);
+        bool counts_emission = wants_all || (has_met_diffuse && path.first_gathered < path.scatterings);
         if (!eye_path_trace(t, worker, &path, in_out, &v)) {
             if (counts_emission)
                 eye_path_add_escaped(t, &path, in_out);
@@ -34,12 +34,12 @@ void path_tracing_radiance(const transport *t, eye_worker *worker, const camera_
         }
         if (counts_emission)
             eye_path_add_emitted(t, &path, &v, in_out);
-        if ((is_whole || has_met_diffuse) && !eye_path_is_last(t, &path) &&
+        if ((wants_all || has_met_diffuse) && !eye_path_is_last(t, &path) &&
             bsdf_is_sampled_from_light(&v.scattering, BSDF_ALL))
             eye_path_add_direct(t, worker, &path, &v, BSDF_ALL, 1, in_out);
 
         float u_lobe = eye_path_u_lobe(&path);
-        bsdf_lobes lobes = is_whole || has_met_diffuse ? BSDF_ALL : pick_group(&v, &u_lobe, &path.throughput);
+        bsdf_lobes lobes = wants_all || has_met_diffuse ? BSDF_ALL : pick_group(&v, &u_lobe, &path.throughput);
         if (!eye_path_go_on(t, &v, lobes, u_lobe, 1, &path))
             return;
     }

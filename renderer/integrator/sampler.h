@@ -30,6 +30,14 @@ typedef enum sample_use {
     SAMPLE_DISTANCE = SAMPLE_USE_COUNT + SAMPLE_LENS
 } sample_use;
 
+/* Added to the number of a vertex for draws that are to be apart from others there. */
+enum {
+    SAMPLER_KEY_BRANCHES = 1 << 16, /* times the exponent of the number of branches that the path was split into */
+    SAMPLER_KEY_ALBEDO = 1 << 20,   /* the albedo of layers */
+    SAMPLER_KEY_RAYS = 1 << 24,     /* times the exponent of the number of rays, or of light samples, behind mirrors */
+    SAMPLER_KEY_CHANCE = 1 << 30    /* whether there is such a ray or sample at all */
+};
+
 typedef struct sampler {
     uint64_t key;         /* of seed and pixel: for numbers that are random alone */
     uint64_t block_key;   /* of seed and block of pixels */

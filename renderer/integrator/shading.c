@@ -11,10 +11,6 @@ enum { BRANCHES_MAX = 8, SMOOTH_BRANCHES_MAX = 4 };
 
 static const float SQRT_2 = 1.41421356f;
 
-/* Added to the vertex by which random numbers are drawn, so that paths with other numbers of branches or of gather rays
- * have other sequences, and likewise the numbers that decide whether there is a gather ray. */
-enum { KEY_OF_BRANCHES = 1 << 16, KEY_OF_RAYS = 1 << 24, KEY_OF_CHANCE = 1 << 30 };
-
 /* A path is split at so many smooth surfaces, and only where the variance of a choice between their two ways, in the
  * square of the light that the eye sees, is above WAYS_VARIANCE. Rays times squared error at four samples, over that of
  * chance alone: a glass pot 0.78, a pool 0.73, twenty thick sheets in a row 0.85, 400 balls 0.99, thirty panes in a row
@@ -60,9 +56,9 @@ static void gather_light(const transport *t, eye_worker *worker, const vertex *v
                          const eye_path *path, eye_sample *sample)
 {
     gather_share rays = share_of_gather(t, from->split.rays, path);
-    int key = eye_path_key(path) + KEY_OF_RAYS * (int)sampler_bits(rays.count);
+    int key = eye_path_key(path) + SAMPLER_KEY_RAYS * (int)sampler_bits(rays.count);
     float chance = rays.probability < 1.0f
-                       ? sampler_2d(&path->where, SAMPLE_ROULETTE, eye_path_key(path) + KEY_OF_CHANCE).x
+                       ? sampler_2d(&path->where, SAMPLE_ROULETTE, eye_path_key(path) + SAMPLER_KEY_CHANCE).x
                        : 0.0f;
     sampler where = path->where;
     if (path->scatterings == 0) { /* the gather rays of all samples of a pixel form one sequence */
@@ -93,9 +89,9 @@ static direct_light direct_radiance(const transport *t, eye_worker *worker, cons
         lights = 1u << bits < lights ? 1u << bits : lights;
     }
     uint64_t before = eye_worker_cost(worker);
-    direct_light direct =
-        direct_light_gathered(t, worker, v, &path->where, eye_path_key(path) + KEY_OF_RAYS * (int)sampler_bits(lights),
-                              transport_sample_counts(t, lights, path->scatterings == 0), by_group);
+    direct_light direct = direct_light_gathered(t, worker, v, &path->where,
+                                                eye_path_key(path) + SAMPLER_KEY_RAYS * (int)sampler_bits(lights),
+                                                transport_sample_counts(t, lights, path->scatterings == 0), by_group);
     if (path->scatterings == 0) {
         float weight = path->share * rgb_mean(path->throughput);
         sample->light_cost += (uint32_t)(eye_worker_cost(worker) - before);
@@ -121,6 +117,20 @@ static rgb caustic_radiance(const transport *t, eye_worker *worker, const vertex
     return caustic;
 }
 
+/* Returns all light that a diffuse vertex sends on, by the photon map's estimate there. */
+static rgb estimated_radiance(const transport *t, eye_worker *worker, const vertex *v)
+{
+    map_point at = vertex_map_point(t->s, v);
+    rgb transmitted = bsdf_gathered_transmission(&v->scattering);
+    rgb all = rgb_mul(bsdf_gathered_reflection(&v->scattering),
+                      irradiance_cache_estimate(t->cache, at.position, at.facing_normal, worker->index));
+    if (!rgb_is_black(transmitted)) {
+        rgb behind = irradiance_cache_estimate(t->cache, at.position, vec3_negate(at.facing_normal), worker->index);
+        all = rgb_add(all, rgb_mul(transmitted, behind));
+    }
+    return rgb_scale(all, AG_INV_PI);
+}
+
 /* Finds the light that a diffuse vertex sends on, and notes in the sample what gather rays, light samples and caustics
  * cost, and how noisy the latter two are. Where the vertex contributes little, all of it is the photon map's estimate
  * there. */
@@ -129,24 +139,15 @@ static diffuse_light diffuse_radiance(const transport *t, eye_worker *worker, co
                                       rgb *by_group)
 {
     int scatterings_left = eye_path_scatterings_left(t, path);
-    bool is_whole = t->settings->only == AG_ONLY_ALL;
-    rgb throughput = path->throughput;
+    bool wants_all = transport_wants_all_light(t);
     diffuse_light sum = {rgb_gray(0.0f), rgb_gray(0.0f), rgb_gray(0.0f), rgb_gray(0.0f)};
     if (scatterings_left < 1)
         return sum;
-    if (is_whole && path->scatterings > 0 && rgb_max(throughput) < SHADING_LOW_CONTRIBUTION) {
-        map_point at = vertex_map_point(t->s, v);
-        rgb transmitted = bsdf_gathered_transmission(&v->scattering);
-        rgb all = rgb_mul(bsdf_gathered_reflection(&v->scattering),
-                          irradiance_cache_estimate(t->cache, at.position, at.facing_normal, worker->index));
-        if (!rgb_is_black(transmitted)) {
-            rgb behind = irradiance_cache_estimate(t->cache, at.position, vec3_negate(at.facing_normal), worker->index);
-            all = rgb_add(all, rgb_mul(transmitted, behind));
-        }
-        sum.indirect = rgb_scale(all, AG_INV_PI);
+    if (wants_all && path->scatterings > 0 && rgb_max(path->throughput) < SHADING_LOW_CONTRIBUTION) {
+        sum.indirect = estimated_radiance(t, worker, v);
         return sum;
     }
-    if (is_whole) {
+    if (wants_all) {
         const direct_light direct = direct_radiance(t, worker, v, from, path, sample, by_group);
         sum.direct = direct.radiance;
         sum.sky = direct.from_sky;
@@ -191,7 +192,7 @@ static void add_diffuse(const transport *t, eye_sample *sample, const diffuse_li
 
 /* Returns how much of the light behind the path the eye sees, at most 1. The throughput alone may be more, as radiance
  * grows where it leaves glass, and then bounds nothing. */
-static float weight_of(const eye_path *path) { return path->share * fminf(rgb_max(path->throughput), 1.0f); }
+static float share_seen(const eye_path *path) { return path->share * fminf(rgb_max(path->throughput), 1.0f); }
 
 /* Returns the number of branches, as the exponent of a power of two, into which the path is split at the vertex: at one
  * that is seen directly or by a smooth surface, where it is traced on in more than one direction; into the fewer, the
@@ -204,7 +205,7 @@ static uint32_t branch_bits(const transport *t, const eye_path *path, const vert
     if (reflected == 0.0f || reflected == 1.0f) /* all reflected, say: branches would be one line */
         return 0;
     int most = bsdf_is_sampled_from_light(&v->scattering, BSDF_TRACED) ? BRANCHES_MAX : SMOOTH_BRANCHES_MAX;
-    return nearest_bits((float)most * bsdf_probability(&v->scattering, BSDF_TRACED) * weight_of(path));
+    return nearest_bits((float)most * bsdf_probability(&v->scattering, BSDF_TRACED) * share_seen(path));
 }
 
 static void follow(const transport *t, eye_worker *worker, const camera_sample *from, eye_path path,
@@ -217,7 +218,7 @@ static void follow_branches(const transport *t, eye_worker *worker, const camera
     for (int i = 0; i < count; i++) {
         eye_path branch = *path;
         branch.where = sampler_branch(&path->where, bits, (uint32_t)i);
-        branch.vertex_key += KEY_OF_BRANCHES * (int)bits;
+        branch.vertex_key += SAMPLER_KEY_BRANCHES * (int)bits;
         branch.share /= (float)count;
         if (eye_path_go_on(t, v, BSDF_TRACED, eye_path_u_lobe(&branch), count, &branch))
             follow(t, worker, from, branch, sample);
@@ -234,8 +235,8 @@ typedef struct two_ways {
 static bool split_ways(const eye_path *path, const vertex *v, two_ways *out)
 {
     float reflected = bsdf_smooth_reflection_share(&v->scattering, BSDF_TRACED), transmitted = 1.0f - reflected;
-    float weight = weight_of(path);
-    if (path->ways_taken >= WAYS_MAX || !(reflected * transmitted * weight * weight > WAYS_VARIANCE))
+    float share = share_seen(path);
+    if (path->ways_taken >= WAYS_MAX || !(reflected * transmitted * share * share > WAYS_VARIANCE))
         return false;
     float u_reflected = 0.5f * reflected, u_transmitted = 1.0f - 0.5f * transmitted;
     bool is_mirror = reflected > transmitted;
@@ -249,15 +250,15 @@ static bool split_ways(const eye_path *path, const vertex *v, two_ways *out)
 
 static void follow(const transport *t, eye_worker *worker, const camera_sample *from, eye_path path, eye_sample *sample)
 {
-    bool is_whole = t->settings->only == AG_ONLY_ALL;
+    bool wants_all = transport_wants_all_light(t);
     for (;;) {
         vertex v;
         if (!eye_path_trace(t, worker, &path, sample, &v)) {
-            if (is_whole)
+            if (wants_all)
                 eye_path_add_escaped(t, &path, sample);
             return;
         }
-        if (is_whole)
+        if (wants_all)
             eye_path_add_emitted(t, &path, &v, sample);
 
         /* diffuse lobes end here */
@@ -271,7 +272,7 @@ static void follow(const transport *t, eye_worker *worker, const camera_sample *
         /* the others are traced on */
         bool is_last = eye_path_is_last(t, &path);
         uint32_t bits = is_last ? 0 : branch_bits(t, &path, &v);
-        if (is_whole && !is_last && bsdf_has(&v.scattering, BSDF_TRACED) &&
+        if (wants_all && !is_last && bsdf_has(&v.scattering, BSDF_TRACED) &&
             bsdf_is_sampled_from_light(&v.scattering, BSDF_TRACED))
             eye_path_add_direct(t, worker, &path, &v, BSDF_TRACED, 1 << bits, sample);
         two_ways ways;

@@ -36,6 +36,9 @@ typedef struct transport {
     float gather_min_distance; /* a gather ray that hits nearer than this does not use the cache, scene units */
 } transport;
 
+/* Returns whether emission and direct light are asked for too, not indirect light alone. */
+static inline bool transport_wants_all_light(const transport *t) { return t->settings->only == AG_ONLY_ALL; }
+
 typedef struct eye_worker {
     _Alignas(64) unsigned index; /* the worker's */
     uint64_t rays_camera, rays_shadow, rays_gather, rays_path;
