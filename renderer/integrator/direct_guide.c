@@ -5,8 +5,6 @@
 
 #include <stdlib.h>
 
-static const float BELOW_ONE = 0x1.fffffep-1f;
-
 bool direct_guide_serves(const scene *s)
 {
     if (s->everywhere_count == 0 || s->everywhere_count >= DIRECT_GUIDE_SHARES_MAX)
@@ -16,11 +14,13 @@ bool direct_guide_serves(const scene *s)
 
 /* --- cells --- */
 
-static uint32_t way_of(vec3 n)
+/* The tree of the points whose surfaces face that way: by the axis nearest to the normal and its sign; the last one
+ * where light from all sides counts. */
+static uint32_t tree_of_normal(vec3 n)
 {
     float x = fabsf(n.x), y = fabsf(n.y), z = fabsf(n.z);
     if (!(x > 0.0f || y > 0.0f || z > 0.0f))
-        return 6;
+        return DIRECT_GUIDE_TREES - 1;
     if (x >= y && x >= z)
         return n.x < 0.0f;
     return y >= z ? 2 + (n.y < 0.0f) : 4 + (n.z < 0.0f);
@@ -48,19 +48,18 @@ typedef struct cell_maker {
     direct_guide *g;
 } cell_maker;
 
-/* The node of points [begin, begin + count) of the order. */
+/* Makes the node of points [begin, begin + count) of the order, which are sorted by cells. Returns its index. */
 static uint32_t make_node(cell_maker *m, uint32_t begin, uint32_t count)
 {
     direct_guide *g = m->g;
-    uint32_t made = g->node_count++, axis = 0, *order = m->order + begin;
+    uint32_t made = g->node_count++, *order = m->order + begin;
     vec3 low = m->positions[order[0]], high = low;
     for (uint32_t i = 1; i < count; i++) {
-        vec3 p = m->positions[order[i]];
-        low = (vec3){fminf(low.x, p.x), fminf(low.y, p.y), fminf(low.z, p.z)};
-        high = (vec3){fmaxf(high.x, p.x), fmaxf(high.y, p.y), fmaxf(high.z, p.z)};
+        low = vec3_min(low, m->positions[order[i]]);
+        high = vec3_max(high, m->positions[order[i]]);
     }
     vec3 size = vec3_sub(high, low);
-    axis = size.y > size.x ? 1 : 0;
+    uint32_t axis = size.y > size.x ? 1 : 0;
     axis = size.z > along(size, axis) ? 2 : axis;
     if (count <= DIRECT_GUIDE_CELL_POINTS || !(along(size, axis) > 0.0f)) {
         bool is_enough = count >= DIRECT_GUIDE_CELL_POINTS_MIN;
@@ -103,12 +102,12 @@ ag_status direct_guide_create(const scene *s, const vec3 *positions, const vec3 
     cell_maker m = {positions, out_order, malloc(some * sizeof *m.sorted), &g};
     bool is_whole = g.nodes && g.cells && m.sorted;
     uint32_t begin = 0;
-    for (uint32_t way = 0; is_whole && way < DIRECT_GUIDE_TREES; way++) {
+    for (uint32_t tree = 0; is_whole && tree < DIRECT_GUIDE_TREES; tree++) {
         uint32_t end = begin;
         for (uint32_t i = 0; i < count; i++)
-            if (way_of(normals[i]) == way)
+            if (tree_of_normal(normals[i]) == tree)
                 out_order[end++] = i;
-        g.roots[way] = end > begin ? make_node(&m, begin, end - begin) : DIRECT_GUIDE_NO_CELL;
+        g.roots[tree] = end > begin ? make_node(&m, begin, end - begin) : DIRECT_GUIDE_NO_CELL;
         begin = end;
     }
     free(m.sorted);
@@ -132,7 +131,9 @@ void direct_guide_reset(direct_guide *g)
 
 /* --- what was seen --- */
 
-/* Finds where each bin begins. The weights are even enough that rounding loses no bin. */
+/* Finds where each bin begins, in units of 1 / DIRECT_GUIDE_ONE. Rounding loses no bin: with a guided share of 0.8 at
+ * most, DIRECT_GUIDE_SHARES_MAX shares at most, and light that is blurred over two rows at least, the narrowest one is
+ * 1.6 units wide. */
 static void find_begins(const double *weights, double whole, uint16_t *out_begins)
 {
     double sum = 0.0;
@@ -142,7 +143,7 @@ static void find_begins(const double *weights, double whole, uint16_t *out_begin
     }
 }
 
-/* even: the share of each bin's density that does not depend on what was seen. */
+/* Makes the histogram of what was seen. even: the share of each bin's density that does not depend on that. */
 static void fill_histogram(direct_histogram *h, const direct_bins *seen, double even)
 {
     double total = 0.0, rows[DIRECT_GUIDE_SIDE], all = 0.0;
@@ -163,16 +164,17 @@ static void fill_histogram(direct_histogram *h, const direct_bins *seen, double 
     find_begins(rows, all, h->rows);
 }
 
-void direct_guide_fill(direct_guide *g, uint32_t cell, float share, const float *brought, const direct_bins *seen)
+void direct_guide_fill(direct_guide *g, uint32_t cell, float guided_share, const float *brought,
+                       const direct_bins *seen)
 {
-    double total = 0.0, equal = (1.0 - (double)share) / g->share_count;
+    double total = 0.0, equal = (1.0 - (double)guided_share) / g->share_count;
     float *shares = g->shares + (size_t)cell * g->share_count;
     for (uint32_t i = 0; i < g->share_count; i++)
         total += (double)brought[i];
     if (!(total > 0.0 && isfinite(total)))
         return;
     for (uint32_t i = 0; i < g->share_count; i++) {
-        double learned = (double)share * (double)brought[i] / total;
+        double learned = (double)guided_share * (double)brought[i] / total;
         uint32_t histogram = g->histogram_of[i];
         shares[i] = (float)(equal + learned);
         if (histogram < g->histogram_count)
@@ -187,7 +189,7 @@ uint32_t direct_guide_find(const direct_guide *g, vec3 point, vec3 normal)
 {
     if (!g)
         return DIRECT_GUIDE_NO_CELL;
-    uint32_t at = g->roots[way_of(normal)];
+    uint32_t at = g->roots[tree_of_normal(normal)];
     if (at == DIRECT_GUIDE_NO_CELL)
         return at;
     const direct_guide_node *node = &g->nodes[at];
@@ -219,7 +221,7 @@ uint32_t direct_guide_pick(const direct_guide *g, const scene *s, uint32_t cell,
         u -= shares[i];
     }
     float share = shares[s->everywhere_count];
-    uint32_t lamp = light_tree_pick(s->light_tree, point, normal, fminf(u / share, BELOW_ONE), out_probability);
+    uint32_t lamp = light_tree_pick(s->light_tree, point, normal, float_below_one(u / share), out_probability);
     *out_probability *= share;
     return lamp;
 }
@@ -237,7 +239,8 @@ float direct_guide_probability(const direct_guide *g, const scene *s, uint32_t c
     return share * light_tree_probability(s->light_tree, light_index, point, normal);
 }
 
-static const direct_histogram *histogram_of(const direct_guide *g, const scene *s, uint32_t cell, uint32_t light_index)
+static const direct_histogram *find_histogram(const direct_guide *g, const scene *s, uint32_t cell,
+                                              uint32_t light_index)
 {
     uint32_t histogram = g->histogram_of[share_of(s, light_index)];
     return histogram == g->histogram_count ? NULL : &g->histograms[(size_t)cell * g->histogram_count + histogram];
@@ -255,8 +258,8 @@ static uint32_t warp(const uint16_t *begins, float *in_out_u)
     uint32_t low = 0;
     for (uint32_t step = DIRECT_GUIDE_SIDE / 2; step > 0; step /= 2)
         low += (float)begins[low + step] <= scaled ? step : 0;
-    float within = fminf((scaled - (float)begins[low]) / width_of(begins, low), BELOW_ONE);
-    *in_out_u = fminf(((float)low + within) / DIRECT_GUIDE_SIDE, BELOW_ONE);
+    float within = float_below_one((scaled - (float)begins[low]) / width_of(begins, low));
+    *in_out_u = float_below_one(((float)low + within) / DIRECT_GUIDE_SIDE);
     return low;
 }
 
@@ -269,7 +272,7 @@ static float density_of(const direct_histogram *h, uint32_t row, uint32_t column
 
 float direct_guide_warp(const direct_guide *g, const scene *s, uint32_t cell, uint32_t light_index, vec2 *in_out_u)
 {
-    const direct_histogram *h = histogram_of(g, s, cell, light_index);
+    const direct_histogram *h = find_histogram(g, s, cell, light_index);
     if (!h)
         return 1.0f;
     uint32_t row = warp(h->rows, &in_out_u->y), column = warp(h->columns[row], &in_out_u->x);
@@ -278,7 +281,7 @@ float direct_guide_warp(const direct_guide *g, const scene *s, uint32_t cell, ui
 
 float direct_guide_density(const direct_guide *g, const scene *s, uint32_t cell, uint32_t light_index, vec3 direction)
 {
-    const direct_histogram *h = histogram_of(g, s, cell, light_index);
+    const direct_histogram *h = find_histogram(g, s, cell, light_index);
     vec2 u;
     if (!h || !light_direction_numbers(&s->lights[light_index], direction, &u))
         return 1.0f;

@@ -9,19 +9,20 @@
  * directions, and one more kind for surfaces that transmit light. In a cell, each light that reaches everywhere has a
  * share of the samples, and all lamps together have one share, which the light tree distributes among them. A histogram
  * warps the random numbers that sample an infinite light without a portal; within a bin the light's own picture
- * decides. Whatever the pilot has seen, a sample has at least (1 - share) of the density that equal shares and the
- * light's own distribution give it. */
+ * decides. Whatever the pilot has seen, a sample has at least (1 - guided_share) of the density that equal shares and
+ * the light's own distribution give it (direct_guide_fill). */
 #ifndef AFTERGLOW_DIRECT_GUIDE_H
 #define AFTERGLOW_DIRECT_GUIDE_H
 
 #include "scene.h"
 
 enum {
-    DIRECT_GUIDE_SIDE = 32,
-    DIRECT_GUIDE_ONE = 1 << 16,
-    DIRECT_GUIDE_SHARES_MAX = 16, /* with more lights that reach everywhere nothing is guided */
-    DIRECT_GUIDE_CELL_POINTS = 16,
-    DIRECT_GUIDE_CELL_POINTS_MIN = 4
+    DIRECT_GUIDE_SIDE = 32,           /* bins of a histogram in width and height */
+    DIRECT_GUIDE_ONE = 1 << 16,       /* the number 1, where bins begin */
+    DIRECT_GUIDE_SHARES_MAX = 16,     /* of a cell; with more lights that reach everywhere nothing is guided */
+    DIRECT_GUIDE_CELL_POINTS = 16,    /* a cell has no more, unless they lie at one place */
+    DIRECT_GUIDE_CELL_POINTS_MIN = 4, /* fewer make no cell */
+    DIRECT_GUIDE_TREES = 7            /* by the axis nearest to the normal and its sign, and one without a normal */
 };
 #define DIRECT_GUIDE_NO_CELL UINT32_MAX
 
@@ -41,8 +42,6 @@ typedef struct direct_guide_node {
 typedef struct direct_guide_cell {
     uint32_t begin, count;
 } direct_guide_cell;
-
-enum { DIRECT_GUIDE_TREES = 7 };
 
 typedef struct direct_guide {
     uint32_t roots[DIRECT_GUIDE_TREES]; /* nodes; DIRECT_GUIDE_NO_CELL: there is no such point */
@@ -73,8 +72,9 @@ typedef struct direct_bins {
 
 /* Fills a cell with what the pilot has seen in it. Where no light was seen, or light whose sum is not finite, the cell
  * stays unguided. brought: [share_count], >= 0, the light that the lights of each share bring; seen: [histogram_count],
- * root mean squares over the bins. share: (0, 1), of the samples that follow the guide. */
-void direct_guide_fill(direct_guide *g, uint32_t cell, float share, const float *brought, const direct_bins *seen);
+ * root mean squares over the bins. guided_share: (0, 0.8], of the samples that follow the guide. */
+void direct_guide_fill(direct_guide *g, uint32_t cell, float guided_share, const float *brought,
+                       const direct_bins *seen);
 
 /* Returns the cell of a point; DIRECT_GUIDE_NO_CELL where nothing is known. normal: unit, or zero where light from all
  * sides counts. g: may be NULL. */

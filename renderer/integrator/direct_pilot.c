@@ -12,6 +12,8 @@
 /* The pilot first casts a few rays for each of 8 by 8 parts of the square: where most of those above the horizon see
  * the sky, no more are needed. Elsewhere it casts one for each bin. For lamps it casts some from each point. */
 enum { COARSE_SIDE = 8, COARSE_RAYS = 2, FINE = DIRECT_GUIDE_SIDE / COARSE_SIDE, LAMP_RAYS = 2 };
+/* A cell's points are sorted by place: bins that are neighbours are looked at from points that are not. */
+enum { POINT_STRIDE = 7 };
 static const float OPEN_SKY = 0.6f;
 static const uint64_t PILOT_SEED = 0x646972656374u;
 
@@ -19,8 +21,9 @@ typedef struct learning {
     const transport *t;
     direct_guide *guide;
     const lit_point *points;
-    const uint32_t *order;
-    uint64_t *rays; /* [cell_count]; UINT64_MAX: out of memory */
+    const uint32_t *order; /* of the points, by cells */
+    direct_bins *bins;     /* [workers][histogram_count]: scratch of each worker */
+    atomic_u64 rays;       /* shadow rays cast; order does not matter: relaxed */
 } learning;
 
 static float mean(rgb c) { return (c.r + c.g + c.b) * (1.0f / 3.0f); }
@@ -31,19 +34,19 @@ static float cosine_at(const lit_point *point, vec3 direction)
     return has_normal ? fmaxf(vec3_dot(point->normal, direction), 0.0f) : 1.0f;
 }
 
-/* The light that one sample of a lamp or sky brings, over the density of its numbers. *out_possible: whether it
- * might. */
+/* The light that one sample of a lamp or sky brings, over the density of its numbers. *in_out_possible counts the
+ * samples that would bring some if nothing were in their way; NULL: they are not counted. */
 static float look_at(const transport *t, eye_worker *worker, const lit_point *point, uint32_t light_index, vec2 u,
-                     bool *out_possible)
+                     uint32_t *in_out_possible)
 {
     light_sample sample;
-    *out_possible = false;
     if (!light_sample_from_point(t->s, &t->s->lights[light_index], point->hit.position, u, &sample))
         return 0.0f;
     float brought = cosine_at(point, sample.direction) * mean(sample.radiance) / sample.pdf_solid_angle;
     if (!(brought > 0.0f && isfinite(brought)))
         return 0.0f;
-    *out_possible = true;
+    if (in_out_possible)
+        (*in_out_possible)++;
     const scene_ray shadow = surface_ray(&point->hit, point->arrived, sample.direction);
     return brought * mean(direct_light_transmittance(t, worker, shadow, &sample));
 }
@@ -58,7 +61,8 @@ typedef struct cell_view {
 
 static const lit_point *point_of(const cell_view *c, uint32_t i) { return &c->l->points[c->points[i % c->count]]; }
 
-static vec2 within(cell_view *c, uint32_t x, uint32_t y, uint32_t side)
+/* Random numbers in one of side by side parts of the unit square. */
+static vec2 numbers_in_part(cell_view *c, uint32_t x, uint32_t y, uint32_t side)
 {
     vec2 u = rng_vec2(&c->random);
     return (vec2){float_below_one(((float)x + u.x) / (float)side), float_below_one(((float)y + u.y) / (float)side)};
@@ -93,10 +97,8 @@ static float look_at_sky(cell_view *c, uint32_t light_index, direct_bins *out)
         for (uint32_t x = 0; x < COARSE_SIDE; x++) {
             float square = 0.0f;
             for (uint32_t i = 0; i < COARSE_RAYS; i++) {
-                bool is_possible;
                 float brought = look_at(c->l->t, &c->worker, point_of(c, number++), light_index,
-                                        within(c, x, y, COARSE_SIDE), &is_possible);
-                possible += is_possible;
+                                        numbers_in_part(c, x, y, COARSE_SIDE), &possible);
                 seen += brought > 0.0f;
                 square += brought * brought / COARSE_RAYS;
             }
@@ -106,9 +108,8 @@ static float look_at_sky(cell_view *c, uint32_t light_index, direct_bins *out)
     if ((float)seen < OPEN_SKY * (float)possible)
         for (uint32_t y = 0; y < DIRECT_GUIDE_SIDE; y++)
             for (uint32_t x = 0; x < DIRECT_GUIDE_SIDE; x++) {
-                bool is_possible;
-                float brought = look_at(c->l->t, &c->worker, point_of(c, number++ * 7), light_index,
-                                        within(c, x, y, DIRECT_GUIDE_SIDE), &is_possible);
+                float brought = look_at(c->l->t, &c->worker, point_of(c, number++ * POINT_STRIDE), light_index,
+                                        numbers_in_part(c, x, y, DIRECT_GUIDE_SIDE), NULL);
                 squares[y][x] = brought * brought;
             }
     blur((const float(*)[DIRECT_GUIDE_SIDE])squares, out);
@@ -124,8 +125,7 @@ static float look_at_light(cell_view *c, uint32_t light_index)
 {
     float square = 0.0f;
     for (uint32_t i = 0; i < c->count; i++) {
-        bool is_possible;
-        float brought = look_at(c->l->t, &c->worker, point_of(c, i), light_index, rng_vec2(&c->random), &is_possible);
+        float brought = look_at(c->l->t, &c->worker, point_of(c, i), light_index, rng_vec2(&c->random), NULL);
         square += brought * brought / (float)c->count;
     }
     return sqrtf(square);
@@ -137,14 +137,13 @@ static float look_at_lamps(cell_view *c)
     float square = 0.0f;
     for (uint32_t i = 0; i < c->count * LAMP_RAYS; i++) {
         const lit_point *point = point_of(c, i);
-        bool is_possible;
         float probability;
         uint32_t lamp =
             light_tree_pick(t->s->light_tree, point->hit.position, point->normal, rng_float(&c->random), &probability);
         vec2 u = rng_vec2(&c->random);
         if (!(probability > 0.0f))
             continue;
-        float brought = look_at(t, &c->worker, point, lamp, u, &is_possible) / probability;
+        float brought = look_at(t, &c->worker, point, lamp, u, NULL) / probability;
         square += brought * brought / (float)(c->count * LAMP_RAYS);
     }
     return sqrtf(square);
@@ -156,11 +155,7 @@ static void learn_cells(void *user, uint64_t begin, uint64_t end, uint64_t block
     learning *l = user;
     direct_guide *g = l->guide;
     const scene *s = l->t->s;
-    direct_bins *bins = malloc((g->histogram_count + 1) * sizeof *bins);
-    if (!bins) {
-        l->rays[begin] = UINT64_MAX;
-        return;
-    }
+    direct_bins *bins = l->bins + (size_t)worker_index * g->histogram_count;
     for (uint64_t cell = begin; cell < end; cell++) {
         cell_view c = {.l = l,
                        .worker = {.index = worker_index},
@@ -178,39 +173,41 @@ static void learn_cells(void *user, uint64_t begin, uint64_t end, uint64_t block
                 brought[i] = look_at_light(&c, s->everywhere_lights[i]);
         }
         direct_guide_fill(g, (uint32_t)cell, l->t->settings->direct_guiding, brought, bins);
-        l->rays[cell] = c.worker.rays_shadow;
+        fetch_add_relaxed_u64(&l->rays, c.worker.rays_shadow);
     }
-    free(bins);
 }
 
-/* Makes cells for the points, and looks from them. */
-static ag_status learn(learning *l, run_context *run, uint32_t count, uint64_t *out_rays)
+/* Makes cells for the points. out_order: [count]. Errors: AG_ERROR_MEMORY. */
+static ag_status make_cells(learning *l, uint32_t count, uint32_t *out_order)
 {
     vec3 *positions = malloc(((size_t)count + 1) * sizeof *positions),
          *normals = malloc(((size_t)count + 1) * sizeof *normals);
-    uint32_t *order = malloc(((size_t)count + 1) * sizeof *order);
-    ag_status status = positions && normals && order ? AG_OK : AG_ERROR_MEMORY;
+    ag_status status = positions && normals ? AG_OK : AG_ERROR_MEMORY;
     for (uint32_t i = 0; status == AG_OK && i < count; i++) {
         positions[i] = l->points[i].hit.position;
         normals[i] = l->points[i].normal;
     }
     if (status == AG_OK)
-        status = direct_guide_create(l->t->s, positions, normals, count, order, l->guide);
-    if (status == AG_OK && !(l->rays = calloc((size_t)l->guide->cell_count + 1, sizeof *l->rays)))
-        status = AG_ERROR_MEMORY;
-    l->order = order;
-    if (status == AG_OK && l->guide->cell_count > 0)
-        status = parallel_for(run, l->guide->cell_count, 4, learn_cells, l, AG_PHASE_RENDER, 0.0, 0.0);
-    for (uint32_t i = 0; status == AG_OK && i < l->guide->cell_count; i++) {
-        if (l->rays[i] == UINT64_MAX)
-            status = AG_ERROR_MEMORY;
-        else
-            *out_rays += l->rays[i];
-    }
-    free(l->rays);
-    free(order);
+        status = direct_guide_create(l->t->s, positions, normals, count, out_order, l->guide);
     free(positions);
     free(normals);
+    return status;
+}
+
+/* Makes cells for the points, and looks from them. */
+static ag_status learn(learning *l, run_context *run, uint32_t count)
+{
+    uint32_t *order = malloc(((size_t)count + 1) * sizeof *order);
+    ag_status status = order ? make_cells(l, count, order) : AG_ERROR_MEMORY;
+    if (status == AG_OK && l->guide->cell_count > 0) {
+        size_t workers = thread_pool_worker_count(run->pool);
+        l->order = order;
+        l->bins = malloc((workers * l->guide->histogram_count + 1) * sizeof *l->bins);
+        status = l->bins ? parallel_for(run, l->guide->cell_count, 4, learn_cells, l, AG_PHASE_RENDER, 0.0, 0.0)
+                         : AG_ERROR_MEMORY;
+        free(l->bins);
+    }
+    free(order);
     return status;
 }
 
@@ -227,8 +224,9 @@ ag_status direct_pilot_learn(const transport *t, run_context *run, direct_guide 
         return AG_OK;
     AG_TRY(eye_pilot_find_lit(t->s, run, t->settings, &points, &count));
     l.points = points;
-    ag_status status = learn(&l, run, count, out_rays);
+    ag_status status = learn(&l, run, count);
     free(points);
+    *out_rays = load_relaxed_u64(&l.rays);
     if (status != AG_OK)
         direct_guide_reset(out_guide);
     return status;
