@@ -3,6 +3,7 @@
 
 #include "integrator/direct_lighting.h"
 #include "integrator/gather_path.h"
+#include "integrator/pilot_lists.h"
 #include "integrator/shading.h"
 #include "parallel_for.h"
 #include "rays/transmittance.h"
@@ -10,7 +11,6 @@
 #include "status.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 /* Eye paths over the frame, about one for so many photons and within bounds; gather rays of each point that they
  * see. */
@@ -24,55 +24,19 @@ enum { STREAM_LAMPS = 1 };
 /* Sampler keys apart from the picture's own. */
 static const uint64_t PILOT_SEED = 0x70696c6f74u;
 
-/* The lists of the pilot's results: the points of eye_pilot's maps in the order of its members, importons, starts of
- * photon paths, and points of direct light. */
-enum { GATHERED, ONWARD, SEEN, WAYS, SEEN_WAYS, STARTS, LIT, LIST_COUNT };
-static const size_t ITEM_BYTES[LIST_COUNT] = {
-    [GATHERED] = sizeof(query_point), [ONWARD] = sizeof(query_point), [SEEN] = sizeof(query_point),
-    [WAYS] = sizeof(photon),          [SEEN_WAYS] = sizeof(photon),   [STARTS] = sizeof(emission_trial),
-    [LIT] = sizeof(lit_point)};
-
-typedef struct item_list {
-    char *items; /* owned */
-    uint32_t count, capacity;
-    bool out_of_memory;
-} item_list;
-
-typedef struct row_items {
-    item_list lists[LIST_COUNT];
-    uint32_t importons;
-} row_items;
-
-static void add_item(row_items *row, int which, const void *item)
+static void add_point(pilot_row *row, pilot_list which, vec3 position, vec3 normal)
 {
-    item_list *list = &row->lists[which];
-    const size_t bytes = ITEM_BYTES[which];
-    if (list->count == list->capacity) {
-        uint32_t capacity = list->capacity ? 2 * list->capacity : 256;
-        char *larger = realloc(list->items, capacity * bytes);
-        if (!larger) {
-            list->out_of_memory = true;
-            return;
-        }
-        list->items = larger;
-        list->capacity = capacity;
-    }
-    memcpy(list->items + list->count++ * bytes, item, bytes);
+    pilot_row_add(row, which, &(query_point){position, normal});
 }
 
-static void add_point(row_items *row, int which, vec3 position, vec3 normal)
-{
-    add_item(row, which, &(query_point){position, normal});
-}
-
-/* Importance that arrives along a direction, as a photon. */
-static void add_importon(row_items *row, int which, vec3 position, vec3 normal, vec3 direction)
+/* Adds importance that arrives along a direction, as a photon. */
+static void add_importon(pilot_row *row, pilot_list which, vec3 position, vec3 normal, vec3 direction)
 {
     photon p = {.position = {position.x, position.y, position.z},
                 .flux = flux_encode(rgb_gray(1.0f), 0),
                 .direction = arrival_encode(direction, true),
                 .normal = direction_encode(normal)};
-    add_item(row, which, &p);
+    pilot_row_add(row, which, &p);
 }
 
 typedef struct pilot_job {
@@ -80,11 +44,11 @@ typedef struct pilot_job {
     int width, height; /* of the grid */
     float aspect;
     bool finds_lit;  /* points of direct light, and nothing else */
-    row_items *rows; /* [height] */
+    pilot_row *rows; /* [height] */
 } pilot_job;
 
-/* On each side that the point's diffuse lobes take light from. */
-static void add_sides(const transport *t, const vertex *v, row_items *out, int which)
+/* Adds the vertex to a list of points on each side that its diffuse lobes take light from. */
+static void add_sides(const transport *t, const vertex *v, pilot_row *out, pilot_list which)
 {
     map_point at = vertex_map_point(t->s, v);
     if (!rgb_is_black(bsdf_gathered_reflection(&v->scattering)))
@@ -96,7 +60,7 @@ static void add_sides(const transport *t, const vertex *v, row_items *out, int w
 /* Looks for a lamp that is picked by its power, as photons' are, from a vertex, and notes how a photon begins
  * that comes straight from there. throughput: of the light that the vertex sends back. */
 static void look_for_lamp(const transport *t, eye_worker *worker, const vertex *v, rgb throughput, rng random,
-                          row_items *out)
+                          pilot_row *out)
 {
     const scene *s = t->s;
     float probability;
@@ -117,12 +81,12 @@ static void look_for_lamp(const transport *t, eye_worker *worker, const vertex *
     found.value = sqrtf(rgb_mean(brought) / (towards.pdf_solid_angle * probability));
     found.start = emission_start_of(found.start.u[0], &numbers);
     if (found.value > 0.0f)
-        add_item(out, STARTS, &found);
+        pilot_row_add(out, PILOT_STARTS, &found);
 }
 
 /* Importance goes back along the light's ways from where it is asked for: where it is scattered by diffuse lobes, light
  * that arrives on that side will arrive there in part. */
-static void trace_importon(const transport *t, eye_worker *worker, const gather_end *end, rng random, row_items *out)
+static void trace_importon(const transport *t, eye_worker *worker, const gather_end *end, rng random, pilot_row *out)
 {
     vertex v;
     rgb throughput = rgb_gray(1.0f);
@@ -141,9 +105,9 @@ static void trace_importon(const transport *t, eye_worker *worker, const gather_
         if (scatterings > 0 && next.group == BSDF_GATHERED) {
             map_point at = vertex_map_point(t->s, &v);
             bool is_through = vec3_dot(vertex_facing_normal(&v), next.direction) < 0.0f;
-            add_point(out, ONWARD, at.position, is_through ? vec3_negate(at.facing_normal) : at.facing_normal);
+            add_point(out, PILOT_ONWARD, at.position, is_through ? vec3_negate(at.facing_normal) : at.facing_normal);
             if (!is_through)
-                add_importon(out, WAYS, at.position, at.facing_normal, v.arrived.direction);
+                add_importon(out, PILOT_WAYS, at.position, at.facing_normal, v.arrived.direction);
         }
         bool goes_straight = transport_is_open_pane(t, &v) && next.is_straight;
         scatterings += !goes_straight;
@@ -159,18 +123,18 @@ static void trace_importon(const transport *t, eye_worker *worker, const gather_
 }
 
 /* Where light may come to what is seen from a traced lobe that is rough. met: of a ray from there, not complete yet. */
-static void note_caustic_way(const transport *t, const vertex *met, row_items *out)
+static void note_caustic_way(const transport *t, const vertex *met, pilot_row *out)
 {
     vertex v = *met;
     transport_complete(t, &v);
     if (!bsdf_has(&v.scattering, BSDF_TRACED) || !bsdf_is_sampled_from_light(&v.scattering, BSDF_TRACED))
         return;
     map_point at = vertex_map_point(t->s, &v);
-    add_importon(out, SEEN_WAYS, at.position, at.facing_normal, v.arrived.direction);
+    add_importon(out, PILOT_SEEN_WAYS, at.position, at.facing_normal, v.arrived.direction);
 }
 
 static void gather_points(const transport *t, eye_worker *worker, const vertex *v, const sampler *where,
-                          int path_vertex, int scatterings_left, row_items *out)
+                          int path_vertex, int scatterings_left, pilot_row *out)
 {
     for (uint32_t i = 0; scatterings_left >= 1 && i < GATHER_RAYS; i++) {
         rng random = rng_make(where->key, (uint64_t)path_vertex, i);
@@ -188,7 +152,7 @@ static void gather_points(const transport *t, eye_worker *worker, const vertex *
         if (!met.is_in_medium)
             note_caustic_way(t, &met, out);
         if (gather_path_follow(t, worker, &met, random, scatterings_left, first.weight, 1.0f, &known, &end, &weight)) {
-            add_point(out, GATHERED, end.point.position, end.point.normal);
+            add_point(out, PILOT_GATHERED, end.point.position, end.point.normal);
             if (i % POINTS_PER_IMPORTON == 0) {
                 out->importons++;
                 trace_importon(t, worker, &end, rng_make(random.state, (uint64_t)path_vertex, i), out);
@@ -198,7 +162,7 @@ static void gather_points(const transport *t, eye_worker *worker, const vertex *
 }
 
 /* Follows an eye path as shading.c does, but looks for no light. */
-static void look(const pilot_job *job, eye_worker *worker, int x, int y, row_items *out)
+static void look(const pilot_job *job, eye_worker *worker, int x, int y, pilot_row *out)
 {
     const transport *t = &job->t;
     const scene *s = t->s;
@@ -217,12 +181,12 @@ static void look(const pilot_job *job, eye_worker *worker, int x, int y, row_ite
         bool is_last = eye_path_is_last(t, &path);
         if (job->finds_lit && !is_last && bsdf_is_sampled_from_light(&v.scattering, BSDF_ALL)) {
             bsdf_lobes lobes = bsdf_has(&v.scattering, BSDF_GATHERED) ? BSDF_GATHERED : BSDF_TRACED;
-            add_item(out, LIT, &(lit_point){v.hit, v.arrived, vertex_light_normal(&v, lobes)});
+            pilot_row_add(out, PILOT_LIT, &(lit_point){v.hit, v.arrived, vertex_light_normal(&v, lobes)});
         } else if (!job->finds_lit && !is_last && bsdf_has(&v.scattering, BSDF_GATHERED)) {
             if (path.vertex > 0 && rgb_max(path.throughput) < SHADING_LOW_CONTRIBUTION) {
-                add_sides(t, &v, out, GATHERED);
+                add_sides(t, &v, out, PILOT_GATHERED);
             } else {
-                add_sides(t, &v, out, SEEN);
+                add_sides(t, &v, out, PILOT_SEEN);
                 gather_points(t, worker, &v, &where, path.vertex, eye_path_scatterings_left(t, &path) - 1, out);
             }
         }
@@ -250,48 +214,11 @@ static void divide_frame(int paths, float aspect, int *out_width, int *out_heigh
     *out_height = height < 1 ? 1 : height > GRID_MAX ? GRID_MAX : height;
 }
 
-/* Errors: AG_ERROR_MEMORY, where a list did not find room. */
-static ag_status count_items(const pilot_job *job, int which, uint32_t *out_count)
-{
-    *out_count = 0;
-    for (int i = 0; i < job->height; i++) {
-        const item_list *list = &job->rows[i].lists[which];
-        if (list->out_of_memory)
-            return AG_ERROR_MEMORY;
-        *out_count += list->count;
-    }
-    return AG_OK;
-}
-
-static void copy_items(const pilot_job *job, int which, void *out_items)
-{
-    char *at = out_items;
-    for (int i = 0; i < job->height; i++) {
-        const item_list *list = &job->rows[i].lists[which];
-        const size_t bytes = list->count * ITEM_BYTES[which];
-        if (bytes > 0)
-            memcpy(at, list->items, bytes);
-        at += bytes;
-    }
-}
-
-/* One list of all rows. *out_items: to be freed by the caller, NULL on failure. */
-static ag_status merge(const pilot_job *job, int which, void **out_items, uint32_t *out_count)
-{
-    *out_items = NULL;
-    AG_TRY(count_items(job, which, out_count));
-    *out_items = malloc((*out_count + 1) * ITEM_BYTES[which]);
-    if (!*out_items)
-        return AG_ERROR_MEMORY;
-    copy_items(job, which, *out_items);
-    return AG_OK;
-}
-
-static ag_status merge_asked(const pilot_job *job, int which, importance_map *out_importance)
+static ag_status merge_asked(const pilot_job *job, pilot_list which, importance_map *out_importance)
 {
     void *points;
     uint32_t count;
-    AG_TRY(merge(job, which, &points, &count));
+    AG_TRY(pilot_rows_merge(job->rows, job->height, which, &points, &count));
     ag_status status = importance_map_create(points, count, out_importance);
     free(points);
     return status;
@@ -304,7 +231,7 @@ static ag_status merge_onward(const pilot_job *job, importance_map *out_importan
     uint32_t count, importons = 0;
     for (int i = 0; i < job->height; i++)
         importons += job->rows[i].importons;
-    AG_TRY(merge(job, ONWARD, &points, &count));
+    AG_TRY(pilot_rows_merge(job->rows, job->height, PILOT_ONWARD, &points, &count));
     vec3 radius = {s->bounding_radius, s->bounding_radius, s->bounding_radius};
     ag_status status = importance_map_create_smooth(points, count, importons, vec3_sub(s->bounding_center, radius),
                                                     vec3_add(s->bounding_center, radius), out_importance);
@@ -312,28 +239,28 @@ static ag_status merge_onward(const pilot_job *job, importance_map *out_importan
     return status;
 }
 
-static ag_status merge_ways(const pilot_job *job, run_context *run, int which, onward_ways *out_ways)
+static ag_status merge_ways(const pilot_job *job, run_context *run, pilot_list which, onward_ways *out_ways)
 {
     uint32_t count;
-    AG_TRY(count_items(job, which, &count));
+    AG_TRY(pilot_rows_count(job->rows, job->height, which, &count));
     if (count == 0)
         return AG_OK;
     photon *importons = photon_records_create(count);
     if (!importons)
         return AG_ERROR_MEMORY;
-    copy_items(job, which, importons);
+    pilot_rows_copy(job->rows, job->height, which, importons);
     return onward_ways_create(run, importons, count, out_ways);
 }
 
 static ag_status merge_starts(const pilot_job *job, emission_starts *out_starts)
 {
     void *trials;
-    AG_TRY(merge(job, STARTS, &trials, &out_starts->count));
+    AG_TRY(pilot_rows_merge(job->rows, job->height, PILOT_STARTS, &trials, &out_starts->count));
     out_starts->trials = trials;
     return AG_OK;
 }
 
-/* The rows are to be freed by free_rows, on failure too. */
+/* The rows are to be freed by pilot_rows_destroy, on failure too. */
 static ag_status look_over_frame(pilot_job *job, run_context *run, int paths, const ag_render_settings *settings)
 {
     job->t.media_are_bounded = settings_bound_media(settings);
@@ -347,22 +274,14 @@ static ag_status look_over_frame(pilot_job *job, run_context *run, int paths, co
     return parallel_for(run, (uint64_t)job->height, 1, look_along_rows, job, AG_PHASE_PHOTONS, 0.0, 0.0);
 }
 
-static void free_rows(pilot_job *job)
-{
-    for (int i = 0; job->rows && i < job->height; i++)
-        for (int k = 0; k < LIST_COUNT; k++)
-            free(job->rows[i].lists[k].items);
-    free(job->rows);
-}
-
 static ag_status merge_lists(const pilot_job *job, run_context *run, eye_pilot *out_pilot)
 {
-    AG_TRY(merge_asked(job, GATHERED, &out_pilot->gathered));
+    AG_TRY(merge_asked(job, PILOT_GATHERED, &out_pilot->gathered));
     AG_TRY(merge_onward(job, &out_pilot->onward));
-    AG_TRY(merge_ways(job, run, WAYS, &out_pilot->ways));
-    AG_TRY(merge_ways(job, run, SEEN_WAYS, &out_pilot->seen_ways));
+    AG_TRY(merge_ways(job, run, PILOT_WAYS, &out_pilot->ways));
+    AG_TRY(merge_ways(job, run, PILOT_SEEN_WAYS, &out_pilot->seen_ways));
     AG_TRY(merge_starts(job, &out_pilot->starts));
-    return merge_asked(job, SEEN, &out_pilot->seen);
+    return merge_asked(job, PILOT_SEEN, &out_pilot->seen);
 }
 
 ag_status eye_pilot_look(const scene *s, run_context *run, const ag_render_settings *settings, eye_pilot *out_pilot)
@@ -375,7 +294,7 @@ ag_status eye_pilot_look(const scene *s, run_context *run, const ag_render_setti
     ag_status status = look_over_frame(&job, run, paths, settings);
     if (status == AG_OK)
         status = merge_lists(&job, run, &made);
-    free_rows(&job);
+    pilot_rows_destroy(job.rows, job.height);
     if (status == AG_OK)
         *out_pilot = made;
     else
@@ -401,8 +320,8 @@ ag_status eye_pilot_find_lit(const scene *s, run_context *run, const ag_render_s
     void *points = NULL;
     ag_status status = look_over_frame(&job, run, LIT_PATHS, settings);
     if (status == AG_OK)
-        status = merge(&job, LIT, &points, out_count);
-    free_rows(&job);
+        status = pilot_rows_merge(job.rows, job.height, PILOT_LIT, &points, out_count);
+    pilot_rows_destroy(job.rows, job.height);
     *out_points = points;
     return status;
 }
