@@ -94,8 +94,8 @@ static inline float eye_sample_bound(const eye_sample *s, float share, int scatt
     return eye_bound(share * (scatterings > 1 ? s->most_indirect : s->most_direct), brought);
 }
 
-/* Says of light that is in the radiance which part it is. */
-static inline void eye_sample_note(eye_sample *s, light_part part, rgb brought)
+/* Adds light that is in the radiance to its part, where layers are asked for. */
+static inline void eye_sample_add_part(eye_sample *s, light_part part, rgb brought)
 {
     if (s->layers)
         s->layers->parts[part] = rgb_add(s->layers->parts[part], brought);

@@ -67,7 +67,7 @@ static float add_light(eye_sample *sample, const eye_path *path, const part_shar
         brought = rgb_scale(brought, kept);
     sample->radiance = rgb_add(sample->radiance, brought);
     for (int i = 0; parts && i < LIGHT_PART_COUNT; i++)
-        eye_sample_note(sample, (light_part)i, rgb_mul(brought, parts->of[i]));
+        eye_sample_add_part(sample, (light_part)i, rgb_mul(brought, parts->of[i]));
     if (parts && is_sky)
         sample->layers->sky = rgb_add(sample->layers->sky, rgb_mul(brought, parts->of[PART_DIRECT]));
     return kept;

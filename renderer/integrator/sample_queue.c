@@ -43,8 +43,8 @@ static void add_gathered(eye_sample *s, const gathered_light *gathered, uint32_t
     s->gather_variance = gathered->variance;
     if (!s->layers)
         return;
-    eye_sample_note(s, PART_INDIRECT, gathered->first);
-    eye_sample_note(s, PART_SPECULAR, gathered->behind);
+    eye_sample_add_part(s, PART_INDIRECT, gathered->first);
+    eye_sample_add_part(s, PART_SPECULAR, gathered->behind);
     eye_sample_add_group(s, group, rgb_add(gathered->first, gathered->behind));
 }
 
@@ -57,29 +57,33 @@ static void scale_layers(sample_layers *layers, float factor)
         layers->groups[i] = rgb_scale(layers->groups[i], factor);
 }
 
-/* Bounds a sample that is too bright, all its parts alike. Returns false where the sample was not finite; it is black
- * then. */
-static bool bound_sample(const struct ag_film *film, eye_sample *sample)
+static bool is_finite(const struct ag_film *film, const eye_sample *sample)
 {
-    const film_response *response = &film->response;
-    bool is_finite = rgb_is_finite(sample->radiance);
+    bool parts_are = true;
     for (int i = 0; sample->layers && film->layout.needs_layers && i < LIGHT_PART_COUNT; i++)
-        is_finite = is_finite && rgb_is_finite(sample->layers->parts[i]);
-    if (!is_finite) {
-        sample->radiance = rgb_gray(0.0f);
-        sample->gather_variance = sample->light_variance = sample->caustic_square = 0.0f;
-        if (sample->layers) {
-            const sample_layers seen = *sample->layers;
-            *sample->layers = (sample_layers){.alpha = seen.alpha, .first = seen.first};
-        }
-    } else if (response->is_bounded) {
-        rgb bounded = film_response_bound(response, sample->radiance);
-        float before = rgb_max(sample->radiance);
-        if (sample->layers && before > 0.0f && rgb_max(bounded) < before)
-            scale_layers(sample->layers, rgb_max(bounded) / before);
-        sample->radiance = bounded;
+        parts_are = parts_are && rgb_is_finite(sample->layers->parts[i]);
+    return parts_are && rgb_is_finite(sample->radiance);
+}
+
+/* Takes all light from a sample; what its ray met first stays. */
+static void blacken(eye_sample *sample)
+{
+    sample->radiance = rgb_gray(0.0f);
+    sample->gather_variance = sample->light_variance = sample->caustic_square = 0.0f;
+    if (sample->layers) {
+        const sample_layers seen = *sample->layers;
+        *sample->layers = (sample_layers){.alpha = seen.alpha, .first = seen.first};
     }
-    return is_finite;
+}
+
+/* Bounds a sample that is too bright, all its parts alike. */
+static void bound(const film_response *response, eye_sample *sample)
+{
+    rgb bounded = film_response_bound(response, sample->radiance);
+    float before = rgb_max(sample->radiance);
+    if (sample->layers && before > 0.0f && rgb_max(bounded) < before)
+        scale_layers(sample->layers, rgb_max(bounded) / before);
+    sample->radiance = bounded;
 }
 
 uint32_t sample_queue_deliver(sample_queue *q, gathered_light *gathered, uint32_t gathered_group, ag_film *film)
@@ -91,7 +95,12 @@ uint32_t sample_queue_deliver(sample_queue *q, gathered_light *gathered, uint32_
             add_gathered(s, &gathered[i], gathered_group);
             gathered[i] = (gathered_light){0};
         }
-        not_finite += !bound_sample(film, s);
+        if (!is_finite(film, s)) {
+            blacken(s);
+            not_finite++;
+        } else if (film->response.is_bounded) {
+            bound(&film->response, s);
+        }
         film_add(film, q->samples[i].pixel, s);
     }
     q->count = q->layers_count = 0;

@@ -179,9 +179,9 @@ static void add_diffuse(const transport *t, eye_sample *sample, const diffuse_li
     if (kept_direct < 1.0f || kept_caustic < 1.0f || kept_indirect < 1.0f)
         all = rgb_add(rgb_add(direct, caustic), indirect);
     sample->radiance = rgb_add(sample->radiance, all);
-    eye_sample_note(sample, is_first ? PART_DIRECT : PART_SPECULAR, direct);
-    eye_sample_note(sample, is_first ? PART_CAUSTIC : PART_SPECULAR, caustic);
-    eye_sample_note(sample, is_first ? PART_INDIRECT : PART_SPECULAR, indirect);
+    eye_sample_add_part(sample, is_first ? PART_DIRECT : PART_SPECULAR, direct);
+    eye_sample_add_part(sample, is_first ? PART_CAUSTIC : PART_SPECULAR, caustic);
+    eye_sample_add_part(sample, is_first ? PART_INDIRECT : PART_SPECULAR, indirect);
     if (is_first && sample->layers)
         sample->layers->sky = rgb_add(sample->layers->sky, rgb_scale(rgb_mul(throughput, diffuse->sky), kept_direct));
     if (by_group) {

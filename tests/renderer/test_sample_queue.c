@@ -84,7 +84,7 @@ static void gathered_light_has_its_parts(void **state)
     ag_film *film = film_of(1, AG_LAYERS_LIGHT);
     gathered_light gathered[1] = {0};
     eye_sample *s = begin(q, 0, true, 1.0f);
-    eye_sample_note(s, PART_EMISSION, rgb_gray(1.0f));
+    eye_sample_add_part(s, PART_EMISSION, rgb_gray(1.0f));
     sample_layers *layers = s->layers;
     gathered[0].first = rgb_gray(2.0f);
     gathered[0].behind = rgb_gray(4.0f);
@@ -119,7 +119,7 @@ static void not_finite_keeps_its_alpha(void **state)
     eye_sample *s = begin(q, 0, true, NAN);
     sample_layers *layers = s->layers;
     layers->alpha = 1.0f;
-    eye_sample_note(s, PART_EMISSION, rgb_gray(2.0f));
+    eye_sample_add_part(s, PART_EMISSION, rgb_gray(2.0f));
     assert_int_equal(sample_queue_deliver(q, NULL, 0, film), 1);
     assert_true(layers->alpha == 1.0f);
     assert_true(layers->parts[PART_EMISSION].r == 0.0f);
