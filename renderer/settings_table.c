@@ -1,7 +1,7 @@
 /* settings_table.c: see settings_table.h. */
 #include "settings_table.h"
 
-#include "film/aov.h"
+#include "film/layer_table.h"
 #include "text/decimal.h"
 
 #include <errno.h>
@@ -92,7 +92,7 @@ static bool is_valid(const setting_row *row, const ag_render_settings *settings)
                    : row->has_automatic && *(const uint64_t *)value == (uint64_t)row->automatic;
     case SETTING_INTEGER:
     case SETTING_NUMBER: return is_in_range(row, number) || (row->has_automatic && number == row->automatic);
-    case SETTING_LAYERS: return (*(const uint32_t *)value & ~aov_known_layers()) == 0;
+    case SETTING_LAYERS: return (*(const uint32_t *)value & ~layers_known()) == 0;
     case SETTING_SIZE: return is_in_range(row, ((const int *)value)[0]) && is_in_range(row, ((const int *)value)[1]);
     case SETTING_WINDOW: {
         const double *window = value;

@@ -9,61 +9,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* --- names --- */
-
-const char *aov_layer_name(uint32_t layer)
-{
-    for (size_t i = 0; layer_at(i); i++)
-        if ((uint32_t)layer_at(i)->info.layer == layer)
-            return layer_at(i)->info.name;
-    return "";
-}
-
-uint32_t aov_known_layers(void)
-{
-    uint32_t layers = 0;
-    for (size_t i = 0; layer_at(i); i++)
-        layers |= (uint32_t)layer_at(i)->info.layer;
-    return layers;
-}
-
-static bool is_word(const char *name, const char *word, size_t length)
-{
-    return name && strlen(name) == length && strncmp(name, word, length) == 0;
-}
-
-/* The layers that a word names: one, those of a group, or all; 0: none. */
-static uint32_t layers_of_word(const char *word, size_t length)
-{
-    uint32_t layers = 0;
-    for (size_t i = 0; layer_at(i); i++) {
-        const ag_layer_info *info = &layer_at(i)->info;
-        if (is_word(info->name, word, length) || is_word(info->group, word, length) ||
-            (is_word("all", word, length) && !info->is_left_out_of_all))
-            layers |= (uint32_t)info->layer;
-    }
-    return layers;
-}
-
-ag_status ag_layers_parse(const char *list, uint32_t *out_layers)
-{
-    if (!list || !out_layers)
-        return AG_ERROR_ARGUMENT;
-    uint32_t layers = 0;
-    for (const char *at = list;; at++) {
-        size_t length = strcspn(at, ",");
-        uint32_t found = layers_of_word(at, length);
-        if (!found)
-            return AG_ERROR_ARGUMENT;
-        layers |= found;
-        at += length;
-        if (*at == '\0')
-            break;
-    }
-    *out_layers = layers;
-    return AG_OK;
-}
-
 /* --- channels --- */
 
 /* Adds the channels of the layers that are asked for; the first time through there is no room for any, and they are
@@ -180,6 +125,8 @@ static const struct {
 #undef SUM_ROW
 #undef SUM_OF_VALUE
 };
+
+_Static_assert(FILM_SUM_COUNT <= 32, "lay_out_sums has a bit for each");
 
 static int sum_width(const aov_layout *layout, film_sum sum)
 {

@@ -35,21 +35,21 @@ typedef enum film_sum {
 
 /* The value that a channel of a file is made of. */
 typedef enum channel_source {
-    CHANNEL_BEAUTY,    /* component of the picture itself */
-    CHANNEL_COLOR,     /* a radiance: component of its mean, developed as the beauty */
-    CHANNEL_MEAN,      /* over all samples */
-    CHANNEL_HIT_MEAN,  /* over those that met a surface */
-    CHANNEL_DIRECTION, /* normalised */
-    CHANNEL_ABSOLUTE,  /* the hit mean's absolute value */
-    CHANNEL_VARIANCE,
-    CHANNEL_RELATIVE_VARIANCE,
-    CHANNEL_SAMPLES,
-    CHANNEL_DEPTH,
+    CHANNEL_BEAUTY,            /* component of the picture itself */
+    CHANNEL_COLOR,             /* a radiance: component of its mean, developed as the beauty */
+    CHANNEL_MEAN,              /* over all samples */
+    CHANNEL_HIT_MEAN,          /* over those that met a surface */
+    CHANNEL_DIRECTION,         /* normalised */
+    CHANNEL_ABSOLUTE,          /* the hit mean's absolute value */
+    CHANNEL_VARIANCE,          /* of the samples, not of their mean; sum: SUM_SQUARES or SUM_HIT_SQUARES */
+    CHANNEL_RELATIVE_VARIANCE, /* that over the samples' mean */
+    CHANNEL_SAMPLES,           /* the number of the pixel's samples */
+    CHANNEL_DEPTH,             /* of film_nearest, as the next two */
     CHANNEL_OBJECT,
     CHANNEL_MATERIAL,
-    CHANNEL_VIEW,      /* component: of film_view */
-    CHANNEL_CRYPTO_ID, /* component: rank + CRYPTOMATTE_RANKS * cryptomatte_kind */
-    CHANNEL_CRYPTO_COVERAGE
+    CHANNEL_VIEW,           /* component: of film_view */
+    CHANNEL_CRYPTO_ID,      /* component: rank + CRYPTOMATTE_RANKS * cryptomatte_kind */
+    CHANNEL_CRYPTO_COVERAGE /* component: likewise */
 } channel_source;
 
 /* A view of the photon map, one value for a pixel as a whole: see debug_views.h. */
@@ -65,9 +65,10 @@ typedef enum film_view {
 typedef struct film_channel {
     char name[64];
     channel_source source;
-    film_sum sum;
-    int component, offset; /* within the sum; of what is summed, to the first of its components */
-    bool is_exact;         /* floats in every file: half would spoil it */
+    film_sum sum;  /* that it is read from, of sources that read one */
+    int component; /* see channel_source; of others 0 to 2 of a colour, direction or point */
+    int offset;    /* of its component 0 among the pixel's sums */
+    bool is_exact; /* floats in every file: half would spoil it */
 } film_channel;
 
 typedef struct aov_layout {
@@ -89,13 +90,9 @@ typedef struct aov_needs {
     bool variance;          /* for adaptive sampling */
 } aov_needs;
 
-/* The name of one layer, as ag_layers_parse reads it; "" where there is none. */
-const char *aov_layer_name(uint32_t layer);
-/* All layers that there are. */
-uint32_t aov_known_layers(void);
-
-/* group_names: of the scene's light
- * groups, [group_count], the first "default". Errors: AG_ERROR_MEMORY. */
+/* Lays out sums and channels of these layers (AG_LAYER_...), but for path tracing (is_path) those of the photon map.
+ * group_names: of the scene's light groups, [group_count], the first "default"; borrowed as long as the layout is used.
+ * Errors: AG_ERROR_MEMORY. */
 ag_status aov_layout_create(uint32_t layers, aov_needs also, bool is_path, const char *const *group_names,
                             int group_count, aov_layout *out_layout);
 void aov_layout_reset(aov_layout *layout);

@@ -1,6 +1,8 @@
 /* layer_table.c: see layer_table.h. */
 #include "film/layer_table.h"
 
+#include <string.h>
+
 #define CHANNELS(...) ((const layer_channels[]){__VA_ARGS__, {0}})
 /* The channels of a part of light. */
 #define PART(word, part)                                                                                               \
@@ -100,4 +102,59 @@ const ag_layer_info *ag_layer_at(size_t index)
 {
     const layer_row *row = layer_at(index);
     return row ? &row->info : NULL;
+}
+
+/* --- their names --- */
+
+const char *layer_name(uint32_t layer)
+{
+    for (size_t i = 0; layer_at(i); i++)
+        if ((uint32_t)layer_at(i)->info.layer == layer)
+            return layer_at(i)->info.name;
+    return "";
+}
+
+uint32_t layers_known(void)
+{
+    uint32_t layers = 0;
+    for (size_t i = 0; layer_at(i); i++)
+        layers |= (uint32_t)layer_at(i)->info.layer;
+    return layers;
+}
+
+static bool is_word(const char *name, const char *word, size_t length)
+{
+    return name && strlen(name) == length && strncmp(name, word, length) == 0;
+}
+
+/* The layers that a word names: one, those of a group, or all; 0: none. */
+static uint32_t layers_of_word(const char *word, size_t length)
+{
+    uint32_t layers = 0;
+    for (size_t i = 0; layer_at(i); i++) {
+        const ag_layer_info *info = &layer_at(i)->info;
+        if (is_word(info->name, word, length) || is_word(info->group, word, length) ||
+            (is_word("all", word, length) && !info->is_left_out_of_all))
+            layers |= (uint32_t)info->layer;
+    }
+    return layers;
+}
+
+ag_status ag_layers_parse(const char *list, uint32_t *out_layers)
+{
+    if (!list || !out_layers)
+        return AG_ERROR_ARGUMENT;
+    uint32_t layers = 0;
+    for (const char *at = list;; at++) {
+        size_t length = strcspn(at, ",");
+        uint32_t found = layers_of_word(at, length);
+        if (!found)
+            return AG_ERROR_ARGUMENT;
+        layers |= found;
+        at += length;
+        if (*at == '\0')
+            break;
+    }
+    *out_layers = layers;
+    return AG_OK;
 }

@@ -33,4 +33,9 @@ typedef struct layer_row {
 /* The rows in the order of their channels in a file; NULL: there are no more. */
 const layer_row *layer_at(size_t index);
 
+/* The name of one layer (AG_LAYER_...), as ag_layers_parse reads it; "" where there is none. */
+const char *layer_name(uint32_t layer);
+/* All layers that there are, a bit each. */
+uint32_t layers_known(void);
+
 #endif

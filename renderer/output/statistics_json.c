@@ -2,7 +2,7 @@
  * Flow: after rendering. Threads: as in afterglow.h. */
 #include "context.h"
 
-#include "film/aov.h"
+#include "film/layer_table.h"
 #include "output/atomic_file.h"
 #include "settings_table.h"
 
@@ -57,7 +57,7 @@ static json_t *layer_names(uint32_t layers)
     json_t *names = json_array();
     for (uint32_t bit = 1; bit; bit <<= 1)
         if (layers & bit)
-            json_array_append_new(names, json_string(aov_layer_name(bit)));
+            json_array_append_new(names, json_string(layer_name(bit)));
     return names;
 }
 

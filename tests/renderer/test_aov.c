@@ -2,7 +2,7 @@
  * first is where, what and which way it is; light groups; pbrt's gbuffer; clamps.
  * Threads: the renderer's. */
 #define _GNU_SOURCE
-#include "film/aov.h"
+#include "film/layer_table.h"
 #include "fixtures/layers_fixture.h"
 
 #define HEAD                                                                                                           \
@@ -34,7 +34,7 @@ static void test_table(void **state)
         seen |= layer;
         all |= info->is_left_out_of_all ? 0 : layer;
         assert_true(strlen(info->about) > 5);
-        assert_string_equal(aov_layer_name(layer), info->name);
+        assert_string_equal(layer_name(layer), info->name);
         assert_int_equal(ag_layers_parse(info->name, &layers), AG_OK);
         assert_int_equal(layers, layer);
         if (info->group) {
@@ -46,7 +46,7 @@ static void test_table(void **state)
             assert_string_not_equal(info->name, ag_layer_at(k)->group ? ag_layer_at(k)->group : "");
         }
     }
-    assert_int_equal(seen, aov_known_layers());
+    assert_int_equal(seen, layers_known());
     assert_int_equal(all, AG_LAYERS_ALL);
     assert_int_equal(ag_layers_parse("light", &layers), AG_OK);
     assert_int_equal(layers, AG_LAYERS_LIGHT);
@@ -91,8 +91,8 @@ static void test_layouts(void **state)
     for (int bits = 0; bits < 4; bits++) {
         aov_needs also = {.albedo_and_normal = bits & 1, .variance = bits & 2};
         expect_layout(0, also, false, 1);
-        expect_layout(aov_known_layers(), also, false, LIGHT_GROUPS_MAX);
-        expect_layout(aov_known_layers(), also, true, LIGHT_GROUPS_MAX);
+        expect_layout(layers_known(), also, false, LIGHT_GROUPS_MAX);
+        expect_layout(layers_known(), also, true, LIGHT_GROUPS_MAX);
         for (size_t i = 0; ag_layer_at(i); i++)
             for (size_t k = 0; k <= i; k++)
                 expect_layout((uint32_t)ag_layer_at(i)->layer | (uint32_t)ag_layer_at(k)->layer, also, k % 2, 3);
