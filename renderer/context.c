@@ -5,6 +5,7 @@
 
 #include "clock.h"
 #include "estimate_fingerprint.h"
+#include "film/film_channels.h"
 #include "film/film_tiles.h"
 #include "floating_point.h"
 #include "last_frame.h"

@@ -1,6 +1,7 @@
 /* adaptive.c: see adaptive.h. */
 #include "film/adaptive.h"
 
+#include "film/film_sums.h"
 #include "parallel_for.h"
 
 #include <stdlib.h>

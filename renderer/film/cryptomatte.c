@@ -132,7 +132,7 @@ void cryptomatte_add(const cryptomatte *matte, uint32_t id, int sign, cryptomatt
     for (int i = 0; i < CRYPTOMATTE_SLOTS; i++)
         if (slots[i].hash == hash || slots[i].hash == 0) {
             slots[i].hash = hash;
-            slots[i].weight += sign;
+            slots[i].signed_count += sign;
             return;
         }
 }
@@ -141,13 +141,13 @@ void cryptomatte_rank(const cryptomatte_slot *slots, int rank, int64_t total, fl
 {
     *out_id = *out_coverage = 0.0f;
     for (int i = 0; i < CRYPTOMATTE_SLOTS && slots[i].hash != 0; i++) {
-        int before = 0; /* slots that come before this one: by weight, then by hash */
+        int before = 0; /* slots that come before this one: by their counts, then by hash */
         for (int k = 0; k < CRYPTOMATTE_SLOTS && slots[k].hash != 0; k++)
-            before += slots[k].weight > slots[i].weight ||
-                      (slots[k].weight == slots[i].weight && slots[k].hash < slots[i].hash);
-        if (before != rank || slots[i].weight <= 0 || total <= 0)
+            before += slots[k].signed_count > slots[i].signed_count ||
+                      (slots[k].signed_count == slots[i].signed_count && slots[k].hash < slots[i].hash);
+        if (before != rank || slots[i].signed_count <= 0 || total <= 0)
             continue;
         memcpy(out_id, &slots[i].hash, sizeof *out_id);
-        *out_coverage = fminf((float)((double)slots[i].weight / (double)total), 1.0f);
+        *out_coverage = fminf((float)((double)slots[i].signed_count / (double)total), 1.0f);
     }
 }

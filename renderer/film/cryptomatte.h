@@ -26,7 +26,7 @@ typedef struct cryptomatte {
 /* Ids that a pixel's samples had, with the samples' signs summed; empty ones have hash 0. */
 typedef struct cryptomatte_slot {
     uint32_t hash;
-    int32_t weight;
+    int32_t signed_count;
 } cryptomatte_slot;
 
 /* Errors: AG_ERROR_MEMORY. */

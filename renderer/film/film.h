@@ -1,7 +1,7 @@
-/* film.h: what the samples of each pixel add up to: sums in double precision, in the order of the samples. A pixel
- * knows how many it has had, so that rendering may stop after any sample and go on later: samples [0, a) and then [a,
- * b) give the bits of [0, b) at once, whatever the tiles, threads or passes. Flow: eye_sample -> [here] -> the picture
- * and its layers. Threads: a pixel belongs to one worker at a time; resolved when none is at work. */
+/* film.h: the film: for each pixel what its samples add up to, sums in double precision, in the order of the samples. A
+ * pixel knows how many it has had, so that rendering may stop after any sample and go on later: samples [0, a) and then
+ * [a, b) give the bits of [0, b) at once, whatever the tiles, threads or passes. Flow: film_sums fills it -> [here] ->
+ * film_channels. Threads: a pixel belongs to one worker at a time; resolved when none is at work. */
 #ifndef AFTERGLOW_FILM_H
 #define AFTERGLOW_FILM_H
 
@@ -40,8 +40,8 @@ typedef struct film_tiles film_tiles; /* see film_tiles.h */
 
 struct ag_film {
     int x0, y0, width, height; /* the crop, in pixels of the full picture */
-    unsigned trial_step;       /* above 1: of its blocks each so manieth alone is rendered, as a trial of the whole */
-    unsigned trial_first;      /* which of those: below trial_step */
+    unsigned trial_step;       /* above 1: one in so many of its blocks is rendered, as a trial of the whole */
+    unsigned trial_first;      /* the first one of the first row: below trial_step */
     unsigned trial_turn;       /* by how many columns a row's blocks are apart from those of the next */
     film_area area;            /* what is rendered: the crop; where blocks are decided on, all that it touches, so that
                                   its pixels get the samples that they have in the full picture */
@@ -57,7 +57,7 @@ struct ag_film {
     double *sums;                  /* [layout.sum_count], of filters with negative lobes twice: by the samples' sign */
     uint32_t *counts;              /* samples so far */
     uint32_t *wanted;              /* samples that it is to have, see adaptive.h; NULL: as many as all */
-    split_trial *splits;           /* see sample_split.h; NULL: all samples are split alike */
+    split_sums *splits;            /* see sample_split.h; NULL: all samples are split alike */
     uint32_t *negatives;           /* samples with sign -1; NULL where the filter has no signs */
     float *views[FILM_VIEW_COUNT]; /* a plane each; NULL where not asked for */
     cryptomatte mattes[CRYPTOMATTE_KIND_COUNT];
@@ -81,15 +81,26 @@ static inline size_t film_area_count(const struct ag_film *film)
     return (size_t)film->area.width * (size_t)film->area.height;
 }
 
+static inline size_t film_crop_count(const struct ag_film *film) { return (size_t)film->width * (size_t)film->height; }
+
+/* The number of doubles among the sums that belong to a pixel. */
+static inline size_t film_sums_of_pixel(const struct ag_film *film)
+{
+    return (size_t)film->layout.sum_count * (film->filter.has_signs ? 2 : 1);
+}
+
 /* The number in the area of a pixel of the full picture. */
 static inline size_t film_pixel_at(const struct ag_film *film, int x, int y)
 {
     return (size_t)(y - film->area.y0) * (size_t)film->area.width + (size_t)(x - film->area.x0);
 }
 
-/* The next sample of a pixel, by the number of the pixel in the area; with layers where the layout or the noise's
- * lattice wants them. */
-void film_add(struct ag_film *film, size_t pixel, const eye_sample *sample);
+/* The number in the area of a pixel of the crop, by its number there. */
+static inline size_t film_pixel_of_crop(const struct ag_film *film, size_t pixel)
+{
+    size_t width = (size_t)film->width;
+    return film_pixel_at(film, film->x0 + (int)(pixel % width), film->y0 + (int)(pixel / width));
+}
 
 /* Sets how the first samples of all pixels are split; does nothing where blocks do not choose. */
 void film_set_first_splits(struct ag_film *film, const ag_render_settings *settings);
@@ -99,9 +110,6 @@ void film_clear(struct ag_film *film, const ag_render_settings *settings);
 
 /* Makes all pixels of the sums, for all to see. */
 void film_resolve(struct ag_film *film);
-
-/* Gives one pixel of the area as the picture shows it. */
-void film_develop(const struct ag_film *film, size_t pixel, float out[3]);
 
 /* An array that samples or the pilot have filled, for checkpoints to write and read. film_planes gives all of them, and
  * returns how many there are. */
@@ -135,21 +143,11 @@ static inline uint32_t film_goal(const struct ag_film *film, size_t pixel, uint3
     return film->wanted && film->wanted[pixel] < all ? film->wanted[pixel] : all;
 }
 
-/* Gives, of a pixel as the film develops it, the mean over the three colours, and the mean of the variances of these
- * means. The film must sum SUM_SQUARES. */
-void film_read_noise(const struct ag_film *film, size_t pixel, double *out_mean, double *out_variance);
-
 /* The numbers of samples that pixels of the crop have had. */
 typedef struct film_count {
     uint32_t least, most;
     double mean;
 } film_count;
 film_count film_count_samples(const struct ag_film *film);
-
-/* Reads a channel of the layout from a resolved film: width * height floats, stride apart. */
-void film_read_channel(const struct ag_film *film, int channel, float *out, size_t stride);
-
-/* The means of a sum of 3 that the layout has, packed: 3 floats a pixel. */
-void film_read_sum(const struct ag_film *film, film_sum sum, float *out);
 
 #endif

@@ -5,9 +5,10 @@
 
 #include "film/film.h"
 
-/* Copies the film's planes to *copy, which is made where it is NULL, and is to be freed. Errors: AG_ERROR_MEMORY. */
-ag_status film_copy_take(struct ag_film *film, unsigned char **copy);
-/* The planes are as they were then; resolved. */
+/* Copies the film's planes to *in_out_copy, which is made where it is NULL, and is to be freed. Errors:
+ * AG_ERROR_MEMORY. */
+ag_status film_copy_take(struct ag_film *film, unsigned char **in_out_copy);
+/* Gives the planes the values of a copy, and resolves the film. */
 void film_copy_restore(struct ag_film *film, const unsigned char *copy);
 
 #endif

@@ -2,6 +2,8 @@
 #define _POSIX_C_SOURCE 200809L
 #include "film/film_tiles.h"
 
+#include "film/film_channels.h"
+
 #include <pthread.h>
 #include <stdlib.h>
 #include <string.h>

@@ -17,7 +17,7 @@
 
 typedef struct noise_lattice {
     int width, height; /* pixels of the area that it lies over */
-    int stride;        /* every so manieth pixel of every so manieth row, from the first on */
+    int stride;        /* from pixel to pixel of the lattice, in x and y */
     int columns, rows;
     double *sums; /* [rows * columns][NOISE_VALUES]; owned */
 } noise_lattice;

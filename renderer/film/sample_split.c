@@ -64,24 +64,24 @@ void split_prior_reset(split_prior *prior)
     *prior = (split_prior){0};
 }
 
-void split_trial_add(split_trial *trial, const eye_sample *sample)
+void split_sums_add(split_sums *sums, const eye_sample *sample)
 {
     rgb radiance = sample->radiance;
-    float value = rgb_mean(radiance), rays = (float)trial->counts.rays, lights = (float)trial->counts.lights;
-    float asked = (float)(1u << trial->counts.caustic_bits);
-    trial->value += value;
-    trial->square += value * value;
-    trial->by_parts += sample->gather_variance;
-    trial->by_ray += sample->gather_variance * rays;
-    trial->cost_of_ray += (float)sample->gather_cost / rays;
-    trial->cost_of_light += (float)sample->light_cost / lights;
-    trial->by_parts += sample->caustic_square * (asked - 1.0f);
-    trial->caustic += sample->caustic_square;
-    trial->cost_of_caustic += (float)sample->caustic_cost * asked;
-    trial->cost_of_rest += (float)sample->rest_cost;
-    if (trial->counts.lights < 2)
+    float value = rgb_mean(radiance), rays = (float)sums->counts.rays, lights = (float)sums->counts.lights;
+    float asked = (float)(1u << sums->counts.caustic_bits);
+    sums->value += value;
+    sums->square += value * value;
+    sums->by_parts += sample->gather_variance;
+    sums->by_ray += sample->gather_variance * rays;
+    sums->cost_of_ray += (float)sample->gather_cost / rays;
+    sums->cost_of_light += (float)sample->light_cost / lights;
+    sums->by_parts += sample->caustic_square * (asked - 1.0f);
+    sums->caustic += sample->caustic_square;
+    sums->cost_of_caustic += (float)sample->caustic_cost * asked;
+    sums->cost_of_rest += (float)sample->rest_cost;
+    if (sums->counts.lights < 2)
         return;
-    trial->by_parts += sample->light_variance;
-    trial->by_light += sample->light_variance * lights;
-    trial->lights_known++;
+    sums->by_parts += sample->light_variance;
+    sums->by_light += sample->light_variance * lights;
+    sums->lights_known++;
 }

@@ -15,7 +15,7 @@ enum { SPLIT_FIRST_BARRIER = 4 };
 enum { SPLIT_FIRST_RAYS_MIN = 4 };
 
 /* A pixel's sums over its samples, and how the next ones are split. Variances are of the mean of the three colours. */
-typedef struct split_trial {
+typedef struct split_sums {
     float value, square;    /* the mean of the three colours, and its square */
     float by_parts;         /* the variance by the choice of gather rays and light samples, and by roulette */
     float by_ray, by_light; /* what it would be with one of them */
@@ -23,7 +23,7 @@ typedef struct split_trial {
     float cost_of_ray, cost_of_light, cost_of_caustic, cost_of_rest;
     uint32_t lights_known; /* samples that by_light sums over: those of two light samples or more */
     split_counts counts;
-} split_trial;
+} split_sums;
 
 /* The numbers that a small picture of the whole frame tells before the first sample. Samples have no part in it, so a
  * film that is emptied keeps it. */
@@ -46,6 +46,7 @@ split_counts sample_split_first(const ag_render_settings *settings);
 /* The most rays of either kind that a sample may have. */
 split_counts sample_split_most(const ag_render_settings *settings, bool splits_samples);
 
-void split_trial_add(split_trial *trial, const eye_sample *sample);
+/* Adds a sample that was split by the sums' counts. */
+void split_sums_add(split_sums *sums, const eye_sample *sample);
 
 #endif

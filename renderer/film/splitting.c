@@ -36,21 +36,22 @@ typedef struct block_sums {
     double cost_of_ray, cost_of_light, cost_of_caustic, cost_of_rest;
 } block_sums;
 
-static void add_pixel(const split_trial *trial, double count, double scale, block_sums *sums)
+/* Adds a pixel that has had so many samples, two or more. scale: from radiance to what is shown. */
+static void add_pixel(const split_sums *pixel, double count, double scale, block_sums *sums)
 {
-    double mean = (double)trial->value / count, lights_known = (double)trial->lights_known;
-    double variance = fmax((double)trial->square - (double)trial->value * mean, 0.0) / (count - 1.0);
+    double mean = (double)pixel->value / count, lights_known = (double)pixel->lights_known;
+    double variance = fmax((double)pixel->square - (double)pixel->value * mean, 0.0) / (count - 1.0);
     double weight = noise_shown_variance(scale * mean, scale * scale);
     sums->pixels += 1.0;
     sums->all += weight * variance;
-    sums->by_parts += weight * (double)trial->by_parts / count;
-    sums->by_ray += weight * (double)trial->by_ray / count;
-    sums->by_light += lights_known > 0.0 ? weight * (double)trial->by_light / lights_known : 0.0;
-    sums->caustic += weight * (double)trial->caustic / count;
-    sums->cost_of_ray += (double)trial->cost_of_ray / count;
-    sums->cost_of_light += (double)trial->cost_of_light / count;
-    sums->cost_of_caustic += (double)trial->cost_of_caustic / count;
-    sums->cost_of_rest += (double)trial->cost_of_rest / count;
+    sums->by_parts += weight * (double)pixel->by_parts / count;
+    sums->by_ray += weight * (double)pixel->by_ray / count;
+    sums->by_light += lights_known > 0.0 ? weight * (double)pixel->by_light / lights_known : 0.0;
+    sums->caustic += weight * (double)pixel->caustic / count;
+    sums->cost_of_ray += (double)pixel->cost_of_ray / count;
+    sums->cost_of_light += (double)pixel->cost_of_light / count;
+    sums->cost_of_caustic += (double)pixel->cost_of_caustic / count;
+    sums->cost_of_rest += (double)pixel->cost_of_rest / count;
 }
 
 /* The bounds of a block's choice. */

@@ -1,6 +1,7 @@
 /* sample_queue.c: see sample_queue.h. */
 #include "integrator/sample_queue.h"
 
+#include "film/film_sums.h"
 #include "large_alloc.h"
 
 #include <stdlib.h>

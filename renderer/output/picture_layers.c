@@ -2,6 +2,7 @@
 #define _GNU_SOURCE
 #include "output/picture_layers.h"
 
+#include "film/film_channels.h"
 #include "integrator/integrator.h"
 #include "settings_table.h"
 

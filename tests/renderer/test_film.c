@@ -2,7 +2,7 @@
  * number of threads; a cancelled pass leaves whole samples; variances and means are those of the samples.
  * Threads: the renderer's. */
 #define _GNU_SOURCE
-#include "film/film.h"
+#include "film/film_sums.h"
 #include "fixtures/layers_fixture.h"
 
 static ag_film *render_in_passes(studio *s, const int *passes)

@@ -2,7 +2,7 @@
  * where variances and costs are known; the expectation stays; the picture is the same for any number of threads,
  * however the work is cut into passes, and in crops; and the choice pays. Threads: the renderer's. */
 #define _GNU_SOURCE
-#include "film/film.h"
+#include "film/film_sums.h"
 #include "film/splitting.h"
 #include "fixtures/layers_fixture.h"
 #include "fixtures/sanitizer.h"
