@@ -66,12 +66,6 @@ lamp_light direct_light_sample_lamp(const transport *t, eye_worker *worker, cons
     return (lamp_light){rgb_scale(rgb_mul(reflected, transmittance), weight / pdf), lamp, sample.direction};
 }
 
-rgb direct_light_from_lamp(const transport *t, eye_worker *worker, const vertex *v, bsdf_lobes lobes, float u_pick,
-                           vec2 u, int lamp_count, float scatter_count)
-{
-    return direct_light_sample_lamp(t, worker, v, lobes, u_pick, u, lamp_count, scatter_count).radiance;
-}
-
 /* Adds light to the group of its lamp, where groups are asked for. */
 static void add_to_group(rgb *by_group, const light *lamp, rgb light_brought)
 {

@@ -10,18 +10,17 @@
 /* Returns the share, [0, 1], of a sample's light that reaches the origin of `shadow`, a ray in its direction. */
 rgb direct_light_transmittance(const transport *t, eye_worker *worker, scene_ray shadow, const light_sample *sample);
 
-/* Returns the reflected radiance of one sample towards a lamp that is picked for the vertex. lamp_count and
- * scatter_count: how many samples the caller takes of either technique, on average; it divides by lamp_count itself.
- * scatter_count 0: this technique alone. */
-rgb direct_light_from_lamp(const transport *t, eye_worker *worker, const vertex *v, bsdf_lobes lobes, float u_pick,
-                           vec2 u, int lamp_count, float scatter_count);
-
-/* The result of direct_light_from_lamp with the lamp and the direction that were sampled. */
+/* One sample towards a lamp, or towards a light that reaches everywhere. */
 typedef struct lamp_light {
-    rgb radiance;
-    uint32_t lamp;  /* lamp and direction are valid where radiance is not black */
+    rgb radiance;   /* that the vertex reflects of it, weighted against samples by scattering, over the sample's density
+                     */
+    uint32_t lamp;  /* the light's index; lamp and direction are valid where radiance is not black */
     vec3 direction; /* towards it, unit */
 } lamp_light;
+
+/* Samples a lamp that is picked for the vertex. lamp_count and scatter_count: how many samples the caller takes of
+ * either technique, on average; the caller divides the sum of its samples by lamp_count. scatter_count 0: this
+ * technique alone. */
 lamp_light direct_light_sample_lamp(const transport *t, eye_worker *worker, const vertex *v, bsdf_lobes lobes,
                                     float u_pick, vec2 u, int lamp_count, float scatter_count);
 

@@ -13,8 +13,8 @@ enum { ROULETTE_AFTER = 4, SHORT_BOUNCES_MAX = 64 };
 static rgb local_light(const transport *t, eye_worker *worker, const vertex *v, float share_seen, rng *random)
 {
     float u_pick = rng_float(random), u_caustic = rng_float(random);
-    rgb direct = direct_light_from_lamp(t, worker, v, BSDF_GATHERED, u_pick, rng_vec2(random), 1, 0.0f);
-    return rgb_add(direct,
+    lamp_light direct = direct_light_sample_lamp(t, worker, v, BSDF_GATHERED, u_pick, rng_vec2(random), 1, 0.0f);
+    return rgb_add(direct.radiance,
                    transport_some_caustics(t, worker, v, transport_caustic_probability(t, share_seen), u_caustic));
 }
 
@@ -110,9 +110,9 @@ static bool scatter(const transport *t, eye_worker *worker, gather_ray *g, const
     bool is_traced = lobes == BSDF_TRACED && (v->is_in_medium || g->traced.is_set);
     if (is_traced && bsdf_is_sampled_from_light(&v->scattering, BSDF_TRACED)) {
         float u_pick = rng_float(&g->random);
-        rgb direct =
-            direct_light_from_lamp(t, worker, v, BSDF_TRACED, u_pick, rng_vec2(&g->random), 1, is_last ? 0.0f : 1.0f);
-        *in_out_known = rgb_add(*in_out_known, rgb_mul(whole_throughput(g), direct));
+        lamp_light direct =
+            direct_light_sample_lamp(t, worker, v, BSDF_TRACED, u_pick, rng_vec2(&g->random), 1, is_last ? 0.0f : 1.0f);
+        *in_out_known = rgb_add(*in_out_known, rgb_mul(whole_throughput(g), direct.radiance));
     }
     bsdf_sample next;
     if (!bsdf_sample_direction(&v->scattering, lobes, BSDF_RADIANCE, u_lobe, u, &next))
