@@ -24,7 +24,7 @@ static float photon_density(const photon_map *map, eye_worker *worker, const map
     if (map->set.count == 0)
         return 0.0f;
     arena_mark mark = arena_save(worker->scratch);
-    photon_neighbor *neighbors = arena_alloc(worker->scratch, photon_map_scratch_count(map) * sizeof *neighbors);
+    photon_neighbor *neighbors = eye_worker_neighbors(worker, map);
     float other_squared, radius_squared = map->max_radius * map->max_radius;
     uint32_t found = photon_tree_k_nearest(&map->tree, at->position, at->facing_normal, PHOTON_ESTIMATE_MIN_COS,
                                            map->max_radius, map->nearest + 1, neighbors, &other_squared);

@@ -20,10 +20,11 @@ typedef struct gathering {
     uint64_t cost;    /* the cost of its rays, as eye_worker_cost has it */
 } gathering;
 
-static rng ray_random(const gathering *g, uint32_t number)
+/* Returns random numbers of the gather ray of that number. key: of the use, 0 for its lobe and its path. */
+static rng ray_random(const gathering *g, uint64_t key, uint32_t number)
 {
     const gather_request *r = g->request;
-    return rng_make(r->where->key, (uint64_t)r->path_vertex, (uint64_t)r->where->sample * r->count + number);
+    return rng_make(r->where->key ^ key, (uint64_t)r->path_vertex, (uint64_t)r->where->sample * r->count + number);
 }
 
 /* Returns how many scatterings are left between a ray's end and the lamp. */
@@ -35,7 +36,7 @@ static void follow(gathering *g, uint32_t number, rgb first, vertex *v)
 {
     gather_end end;
     rgb weight, known = rgb_gray(0.0f);
-    rng random = ray_random(g, number);
+    rng random = ray_random(g, 0, number);
     rng_next(&random); /* skips the number that picked the lobe by which the ray left */
     uint64_t before = eye_worker_cost(g->worker);
     bool asks = gather_path_follow(g->t, g->worker, v, random, scatterings_left(g), first, g->share_seen, &known, &end,
@@ -51,8 +52,7 @@ static void follow(gathering *g, uint32_t number, rgb first, vertex *v)
 static void follow_alone(gathering *g, uint32_t number, vec3 direction, rgb weight)
 {
     vertex v;
-    rng random = rng_make(g->request->where->key ^ KEY_OF_DISTANCE, (uint64_t)g->request->path_vertex,
-                          (uint64_t)g->request->where->sample * g->request->count + number);
+    rng random = ray_random(g, KEY_OF_DISTANCE, number);
     scene_ray ray = transport_scattered_ray(g->t, g->request->from, direction, false);
     ray.skips_uv = true;
     ray.cone = transport_gather_cone(g->request->from);
@@ -122,8 +122,8 @@ static void sample_plain(const gathering *g, const incident_guide *guide, sample
             fan->direction[a][k] = fan->direction[a][i];
         r->number[k] = begin + i;
         r->weight[k] = guide ? rgb_scale(b->material.diffuse.reflectance, weights[i]) : b->material.diffuse.reflectance;
-        fan->count += vec3_dot(direction, n) >
-                      0.0f; /* a shading normal sends some rays through the surface, which bring nothing */
+        /* a shading normal sends some rays through the surface, which bring nothing */
+        fan->count += vec3_dot(direction, n) > 0.0f;
     }
 }
 
@@ -134,7 +134,7 @@ static void sample_lobes(gathering *g, sampler_sequence *numbers, uint32_t begin
     vec3 n = vertex_facing_normal(g->request->from);
     for (uint32_t i = begin; i < end; i++) {
         bsdf_sample s;
-        rng random = ray_random(g, i);
+        rng random = ray_random(g, 0, i);
         vec2 u = sampler_sequence_at(numbers, i);
         if (!bsdf_sample_direction(b, BSDF_GATHERED, BSDF_RADIANCE, rng_float(&random), u, &s))
             continue;

@@ -20,13 +20,12 @@ static rgb irradiance_at(const transport *t, eye_worker *worker, const vertex *v
     const photon_map *map = t->cache->map;
     map_point at = vertex_map_point(t->s, v);
     arena_mark mark = arena_save(worker->scratch);
-    photon_neighbor *neighbors = arena_alloc(worker->scratch, photon_map_scratch_count(map) * sizeof *neighbors);
+    photon_neighbor *neighbors = eye_worker_neighbors(worker, map);
     rgb irradiance;
     uint64_t rays = worker->rays_estimate;
     irradiance_estimate_find(map, at.position, at.facing_normal, neighbors, &worker->rays_estimate, &irradiance);
-    worker->uncharged_cost +=
-        worker->rays_estimate -
-        rays; /* not charged to the sample: asking for a layer must not change how samples are split */
+    /* not charged to the sample: asking for a layer must not change how samples are split */
+    worker->uncharged_cost += worker->rays_estimate - rays;
     arena_restore(worker->scratch, mark);
     return irradiance;
 }

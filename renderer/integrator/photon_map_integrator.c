@@ -32,11 +32,10 @@ static bool reserve(const transport *t, eye_worker *worker)
     if (!worker->batch || !worker->scratch)
         return false;
     arena_mark mark = arena_save(worker->scratch);
-    bool fits = arena_alloc(worker->scratch, photon_map_scratch_count(t->caustic) * sizeof(photon_neighbor)) != NULL;
-    if (fits &&
-        (aov_has(t->layout, SUM_IRRADIANCE) ||
-         t->layout->has_view[VIEW_PHOTON_DENSITY])) /* only these layers ask the global map outside of the cache */
-        fits = arena_alloc(worker->scratch, photon_map_scratch_count(t->cache->map) * sizeof(photon_neighbor));
+    bool fits = eye_worker_neighbors(worker, t->caustic) != NULL;
+    /* only these layers ask the global map outside of the cache */
+    if (aov_has(t->layout, SUM_IRRADIANCE) || t->layout->has_view[VIEW_PHOTON_DENSITY])
+        fits = fits && eye_worker_neighbors(worker, t->cache->map);
     arena_restore(worker->scratch, mark);
     return fits;
 }

@@ -120,8 +120,7 @@ rgb transport_caustics(const transport *t, eye_worker *worker, const vertex *v)
         return rgb_gray(0.0f);
     map_point at = vertex_map_point(t->s, v);
     arena_mark mark = arena_save(worker->scratch);
-    photon_neighbor *neighbors =
-        arena_alloc(worker->scratch, photon_map_scratch_count(t->caustic) * sizeof(photon_neighbor));
+    photon_neighbor *neighbors = eye_worker_neighbors(worker, t->caustic);
     rgb reflected = bsdf_gathered_reflection(&v->scattering), transmitted = bsdf_gathered_transmission(&v->scattering);
     const double least_area = caustic_least_area(t->caustic);
     worker->estimates_caustic += rgb_is_black(transmitted) ? 1 : 2;

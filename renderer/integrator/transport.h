@@ -52,6 +52,12 @@ typedef struct eye_worker {
     uint64_t uncharged_cost;               /* of what is not charged to a sample: detours of gather rays, and layers */
 } eye_worker;
 
+/* Returns room for the photons of an estimate of the map, which arena_restore gives back. */
+static inline photon_neighbor *eye_worker_neighbors(eye_worker *worker, const photon_map *map)
+{
+    return arena_alloc(worker->scratch, photon_map_scratch_count(map) * sizeof(photon_neighbor));
+}
+
 /* The cost of a worker's rays so far in quarters of a gather ray's time, as measured in five rooms. Detours are left
  * out: they do not belong to the sample under way. A camera ray's cost includes the sample's whole way into the film, a
  * path ray's the shading of the vertex that it meets. */
