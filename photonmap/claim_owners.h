@@ -2,7 +2,8 @@
  * Each process has an entry in a table in the file, a number that its claims carry, and a lock on one byte of the file.
  * The kernel releases the lock however the process ends, so the lock tells whether it is alive.
  * Rests on: fcntl(2), open file description locks.
- * Flow: photon_file joins -> irradiance_cache waits. Modelled in tests/models/irradiance_slot_shared.pml.
+ * Flow: photon_file joins -> irradiance_cache waits. Modelled in tests/models/irradiance_slot_shared.pml and
+ * irradiance_slot_threads.pml.
  * Threads: one thread joins and leaves; any may call the others.
  *
  * A claim carries the entry's index and a generation. A process that takes the entry of a dead one begins a new

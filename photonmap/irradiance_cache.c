@@ -157,12 +157,14 @@ static uint32_t await(irradiance_cache *cache, const run_context *run, uint32_t 
     claim_wait wait = {0};
     uint32_t word = irradiance_slot_read(slot);
     while (!irradiance_word_is_ready(word) && !(run && run_is_cancelled(run))) {
-        uint32_t claimer = claimer_of(cache, worker_index);
         if (!cache->owners) {
             sched_yield(); /* the claimer may need this processor */
-        } else if (claim_owners_wait(cache->owners, &wait, word) && irradiance_slot_take_over(slot, &word, claimer)) {
-            cache->counters[worker_index].reclaimed++;
-            return compute(cache, index, claimer, worker_index);
+        } else if (claim_owners_wait(cache->owners, &wait, word)) {
+            uint32_t claimer = claimer_of(cache, worker_index); /* read after the wait, in which it may be renewed */
+            if (irradiance_slot_take_over(slot, &word, claimer)) {
+                cache->counters[worker_index].reclaimed++;
+                return compute(cache, index, claimer, worker_index);
+            }
         }
         word = irradiance_slot_read(slot);
     }
