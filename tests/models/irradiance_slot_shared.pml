@@ -3,10 +3,11 @@
  * generations, the lock that the kernel drops) and irradiance_cache.c (get, await).
  * Run by test_irradiance_slot_model.sh. The BROKEN_... variants must be caught; they show that the properties can fail.
  *
- * Processes of one thread each ask for slots. One that dies is gone; another may then begin in its entry, with a new
- * generation: the entry's lock is free. STOPS: one may be stopped instead of dying; others lose patience with it after
- * a while, take its claim over, and later it goes on. Two processes, and one in a dead one's entry, take a second; set
- * FIRST to 3, SLOTS and REQUESTS to 2 for a minute's search. */
+ * Processes of one thread each ask for slots; irradiance_slot_threads.pml has several threads in each. One that dies is
+ * gone; another may then begin in its entry, with a new generation: the entry's lock is free. STOPS: one may be stopped
+ * instead of dying; others lose patience with it after a while, take its claim over, and later it goes on. Two
+ * processes, and one in a dead one's entry, take a second; set FIRST to 3, SLOTS and REQUESTS to 2 for a minute's
+ * search. */
 
 #ifndef FIRST
 #define FIRST    2 /* processes that begin at once */
@@ -48,7 +49,7 @@ byte computed[SLOTS];      /* estimates finished and published */
 byte reclaimed[SLOTS];     /* claims taken over */
 byte orphaned[SLOTS];          /* claims that the dead have left */
 byte wasted[SLOTS];        /* estimates finished for nothing: publish failed */
-bool stands[4];
+bool stands[4]; /* processes that have been stopped */
 byte stops = 0, impatience = 0;
 
 /* claim_owners_is_alive, in its two steps: the table, then the lock. */
@@ -177,7 +178,7 @@ proctype process(byte me)
 #ifndef STOPS
                         /* nobody computes what another living process is computing, or what is there already */
                         assert(holders[index] == 1 && computed[index] == 0);
-                        /* and a claim is taken over for each one that was left, no more */
+                        /* a claim is taken over once for each that was left */
                         assert(reclaimed[index] <= orphaned[index]);
 #endif
                         found = EMPTY

@@ -1,5 +1,6 @@
 #!/bin/bash
-# The irradiance slot's protocol, between threads and between processes that die, checked exhaustively by spin; and that spin catches it when it is broken.
+# The irradiance slot's protocol, between threads, between processes that die, and between processes of several threads,
+# checked exhaustively by spin; and that spin catches it when it is broken.
 # Exit 77 (skipped) where spin is not installed.
 set -u
 models=$(cd "$(dirname "$0")" && pwd)
@@ -71,5 +72,28 @@ check "an entry without generations: safety" fails "$safety" "" -DBROKEN_GENERAT
 check "a claim taken over without comparing: safety" fails "$safety" "" -DBROKEN_TAKE_OVER
 check "a value published without comparing: safety" fails "$safety" "" -DBROKEN_PUBLISH -DSTOPS
 check "the dead are not found: liveness" fails "$liveness" "-a -f -N all_end" -DBROKEN_LOCK
+
+model=$models/irradiance_slot_threads.pml
+one="-DPROCESSES=1 -DDEATHS=0"
+two="-DPROCESSES=2 -DDEATHS=1 -DWORKERS=3"
+check "two processes of two threads, one dies: nothing twice, no claim lost" holds "$safety" ""
+# shellcheck disable=SC2086
+check "processes of two threads and of one: all others end" holds "$liveness" "-a -f -N all_end" $two
+# shellcheck disable=SC2086
+check "processes of two threads and of one: what is ready stays ready" holds "" "-a -N ready_is_final" $two
+# shellcheck disable=SC2086
+check "a process with a new number: one waiting thread computes anew" holds "$safety" "" -DPATIENCE=1 $two
+# shellcheck disable=SC2086
+check "three threads of a process with a new number: the same" holds "$safety" "" -DPATIENCE=1 -DWORKERS=3 $one
+# shellcheck disable=SC2086
+check "a process with a new number: all others end" holds "$liveness" "-a -f -N all_end" -DPATIENCE=1 $two
+# shellcheck disable=SC2086
+check "a claim that nobody is at work on: all end" holds "$liveness" "-a -f -N all_end" -DPATIENCE=1 -DLOST -DWORKERS=2 $one
+
+check "a claim taken over from a thread of the same process: safety" fails "$safety" "" -DBROKEN_OWN
+# shellcheck disable=SC2086
+check "a number read before the wait: safety" fails "$safety" "" -DBROKEN_NUMBER -DPATIENCE=1 -DWORKERS=3 $one
+# shellcheck disable=SC2086
+check "a claim that nobody is at work on, without a new number: liveness" fails "$liveness" "-a -f -N all_end" -DLOST -DWORKERS=2 $one
 
 [ $failures -eq 0 ]
