@@ -118,8 +118,7 @@ static ag_status add_guided_photons(const scene *s, run_context *run, photon_tra
     return status;
 }
 
-/* A number of photons is wanted of the global map by power alone; else a number of paths, since photons might be few.
- */
+/* By power alone the global map gets a number of photons; else a number of paths, since photons may be few. */
 static ag_status add_traced(const scene *s, run_context *run, photon_tracing_fn *trace, hash128 *in_out_hash)
 {
     photon_tracing_settings global = {.kind = PHOTON_GLOBAL,

@@ -192,9 +192,8 @@ static bool may_end(const photon_map *map, const clear_space *space, const photo
                                        disc->radius, in_out_rays);
 }
 
-/* Where the surface ends within the disc: takes the photons of its part alone into the sums, and that part for the
- * area, if an estimate holds there, or if there is a least area. extent: of the whole disc; returns that of the part.
- */
+/* Where the surface ends within the disc, takes the photons of its part alone into the sums, and that part for the
+ * area, if an estimate holds there or there is a least area. extent: of the whole disc; returns that of the part. */
 static irradiance_extent fit_to_surface(const photon_map *map, const clear_space *space, const photon_disc *disc,
                                         photon_found *found, bool has_next, irradiance_extent extent, double least_area,
                                         uint64_t *in_out_rays, photon_disc_sums *in_out_sums, double *in_out_area)

@@ -47,9 +47,9 @@ uint32_t irradiance_estimate_word(const photon_map *map, uint32_t irradiance_pho
 
 /* Returns the irradiance where it is seen directly, so that another estimate cannot take its place: on a surface too
  * small to hold one, the flux of its own photons over its area, m^2, along the surface as it bends, or over least_area
- * (> 0) where that is larger. The mean is then right on flat and on round surfaces that are not smaller than that; rods
- * thinner than a fortieth of the disc's radius have up to a fifth too little. No photon is brighter than on that area.
- */
+ * (> 0) where that is larger. The mean is then right on flat and round surfaces that are not smaller than that; rods
+ * thinner than a fortieth of the disc's radius have up to a fifth too little. No photon counts for more than its flux
+ * over least_area. */
 rgb irradiance_estimate_seen(const photon_map *map, vec3 position, vec3 normal, double least_area,
                              photon_neighbor *scratch, uint64_t *in_out_rays);
 

@@ -1,9 +1,9 @@
 /* render_scene.c: the library on one page: scene in, picture out, with messages, progress, and Ctrl-C.
- * C17 and C++17 alike:
  *
  *     cc -std=c17 render_scene.c -o render_scene $(pkg-config --cflags --libs afterglow)
  *     ./render_scene room.pbrt room.png [NAME=VALUE]
- */
+ *
+ * It compiles as C17 and as C++17. */
 #include <afterglow/afterglow.h>
 
 #include <signal.h>

@@ -2,8 +2,9 @@
  * map, and a window's copy of the picture that is brought up to date while each is rendered.
  *
  *     cc -std=c17 walk.c -o walk $(pkg-config --cflags --libs afterglow)
- *     ./walk /dev/shm/walk.map view       # view1.png, view2.png, view3.png
- */
+ *     ./walk /dev/shm/walk.map view
+ *
+ * It writes view1.png, view2.png and view3.png. */
 #define _POSIX_C_SOURCE 200809L
 #include <afterglow/afterglow.h>
 

@@ -75,8 +75,7 @@ static float add_light(eye_sample *sample, const eye_path *path, const part_shar
 
 /* --- the steps --- */
 
-/* Notes for layers what the camera ray has met first: a surface, also where a medium before it has scattered the ray.
- */
+/* Notes for layers what the camera ray meets first: a surface, also where a medium before it has scattered the ray. */
 static void fill_first_hit(const transport *t, eye_worker *worker, const eye_path *path, const vertex *met,
                            first_hit *out_first)
 {

@@ -25,8 +25,8 @@ typedef enum sample_use {
     /* The time of the path, drawn at its first vertex alone. It takes the numbers of SAMPLE_PIXEL at the second vertex,
      * where no point on the film is drawn, so other draws keep their numbers. */
     SAMPLE_TIME = SAMPLE_USE_COUNT + SAMPLE_PIXEL,
-    /* How far a ray goes through media that scatter. It takes the numbers of SAMPLE_LENS at the next vertex, likewise.
-     */
+    /* How far a ray goes through media that scatter. It takes the numbers of SAMPLE_LENS at the next vertex, where no
+     * point on the lens is drawn. */
     SAMPLE_DISTANCE = SAMPLE_USE_COUNT + SAMPLE_LENS
 } sample_use;
 

@@ -14,9 +14,9 @@
 
 typedef struct image_levels image_levels;
 
-/* The file is opened as of input_file_open; run may be NULL. *out_levels NULL, with AG_OK: the file holds no levels,
- * cannot be read, or is of no kind that parts are read of, which reading it whole will tell. Errors: AG_ERROR_MEMORY.
- */
+/* Opens a file of which tiles are to be read, by input_file_open; run may be NULL. *out_levels is NULL, with AG_OK,
+ * where the file holds no levels, is of a kind that is only read whole, or cannot be read, which is an error once it is
+ * read whole. Errors: AG_ERROR_MEMORY. */
 ag_status image_levels_open(const run_context *run, const char *path, image_levels **out_levels);
 void image_levels_close(image_levels *l); /* NULL is fine */
 

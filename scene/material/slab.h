@@ -16,10 +16,10 @@ struct surface_hit;
 /* Returns whether plates of the material have a closed form: smooth glass and nothing else, uniform. */
 bool slab_may_be_of(const struct scene *s, uint32_t material_index);
 
-/* Computes reflectance and transmittance of a plate of such a material, together at most 1, for light at a cosine (>=
- * 0) from outside. Where each face reflects R, and a is the transmittance between them, T = (1 - R)^2 a / (1 - R^2
- * a^2). hit: on the face that light enters by, with the way through the plate; between: the medium there, NULL: none.
- */
+/* Returns reflectance and transmittance of a plate of such a material, together at most 1, for light that comes from
+ * outside at a cosine (>= 0). Where each face reflects R, and a is the transmittance between the faces,
+ * T = (1 - R)^2 a / (1 - R^2 a^2). hit: on the face that light enters by, with the way through the plate. between: the
+ * medium within the plate, or NULL. */
 slab_point slab_point_at(const material_point *face, float cosine, const struct surface_hit *hit,
                          const struct medium *between);
 

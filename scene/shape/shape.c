@@ -305,8 +305,7 @@ static float corners_epsilon(const corners *c)
            SHAPE_EPSILON_RELATIVE;
 }
 
-/* Position, normals and epsilon where the vertices move. Not inlined: such meshes are rare, and this function is hot.
- */
+/* Position, normals and epsilon where the vertices move. Not inlined: such meshes are rare, and the caller is hot. */
 static __attribute__((noinline)) void moving_mesh_surface_at(const shape *s, uint32_t primitive_index, float u, float v,
                                                              float time, surface_hit *h)
 {

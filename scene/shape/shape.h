@@ -137,8 +137,7 @@ static inline float mesh_area_share(const mesh *m, uint32_t triangle)
 /* Picks a triangle of a mesh that is a lamp with a probability in proportion to its area, and returns its number.
  * *in_out_u is uniform in [0, 1), and afterwards another such number, which does not depend on the triangle. */
 uint32_t shape_pick_triangle(const shape *s, float *in_out_u);
-/* Returns the sample at a point of a triangle of such a mesh. barycentrics: the weights of its second and third corner.
- */
+/* Returns the sample at a point of a mesh's triangle. barycentrics: the weights of its second and third corner. */
 surface_sample shape_sample_triangle(const shape *s, uint32_t triangle, vec2 barycentrics);
 /* The whole hit at a sampled point; distance is 0. */
 void shape_sample_surface(const shape *s, uint32_t shape_index, const surface_sample *sample, surface_hit *out_hit);
@@ -162,8 +161,7 @@ void shape_hit_at(const shape *s, uint32_t primitive_index, float u, float v, ve
 bool shape_bare_point_at(const shape *s, uint32_t primitive_index, float u, float v, vec3 position,
                          surface_point *out_point);
 
-/* Area of a shape in world space, m^2, at the opening of the shutter. For a power given in the file (pbrt's "power").
- */
+/* Returns the area of a shape in world space, m^2, at the opening of the shutter. pbrt's "power" needs it. */
 float shape_area(const shape *s);
 /* Finds the box, in the shape's space, that holds the shape for as long as the shutter is open. */
 void shape_bounds(const shape *s, vec3 *out_min, vec3 *out_max);

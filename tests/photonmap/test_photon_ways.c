@@ -62,8 +62,7 @@ static guided_flux trace_guided(test_run *r, const scene *s, photon_kind kind, c
     return sum;
 }
 
-/* In a closed sphere of albedo 1/2 twice the lamp's flux arrives, and as much on each side, wherever paths are guided.
- */
+/* In a closed sphere of albedo 1/2 twice the lamp's flux arrives. Guiding changes neither that nor a side's share. */
 static void guided_paths_carry_the_same_flux(void **state)
 {
     (void)state;

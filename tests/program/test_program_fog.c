@@ -60,8 +60,7 @@ static void test_shining_wall(void **state)
 
 static const double ABSORBED[3] = {0.1, 0.3, 0.0}, SCATTERED[3] = {0.4, 0.2, 2.0};
 
-/* The integral of fog_slab.pbrt by midpoints, also where the eye is below. cosine: of the angle by which light turns.
- */
+/* The integral of fog_slab.pbrt by midpoints, also for an eye below. cosine: of the angle by which light turns. */
 static double scattered_once(int c, double cosine, bool is_below)
 {
     enum { STEPS = 20000 };

@@ -78,8 +78,7 @@ static void test_many(void **state)
     assert_true(bound < few + (MOST - 2) * whole_bytes);
 }
 
-/* A scene of little text tells how far it is read while its pictures are, which does not tell how long the rest takes.
- */
+/* While pictures are read, a scene of little text tells how far it is, but not how long the rest of the work takes. */
 static void test_progress(void **state)
 {
     (void)state;

@@ -29,8 +29,8 @@ static const sheen_model MODELS[] = {SHEEN_CHARLIE, SHEEN_SCHLICK, SHEEN_VELVET}
 
 /* --- closed forms --- */
 
-/* At a right angle the half vector is half way down: with c its cosine, the integral of (1 - c)^5 (2 c^2 - 1) 8 pi c.
- */
+/* At a right angle the half vector is half way down: with c its cosine, the integral of 8 pi c (1 - c)^5 (2 c^2 - 1)
+ * from c = cos 45 degrees to 1. */
 static double schlick_at_right_angle(void)
 {
     static const double BINOMIAL[6] = {1, -5, 10, -10, 5, -1};
