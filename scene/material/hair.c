@@ -68,9 +68,9 @@ static double angle_of(double sine, double cosine)
 /* The sine of the normal's angle to the ray, [-1, 1]. v grows to the axis' left as the ray comes, phi to its right. */
 static double offset_of(float v) { return fmin(fmax(1.0 - 2.0 * (double)v, -1.0), 1.0); }
 
-static hair_passage passage_of(const hair_point *p, double offset, inclination o)
+static hair_crossing crossing_of(const hair_point *p, double offset, inclination o)
 {
-    hair_passage w;
+    hair_crossing w;
     double ior = p->fibre->ior, cos_gamma = sine_to_cosine(offset);
     double bent = sqrt(fmax(1e-12, ior * ior - o.sine * o.sine)) / fmax(o.cosine, 1e-6); /* Marschner's eta' */
     double sin_inside = fmin(fmax(offset / bent, -1.0), 1.0), cos_inside = sine_to_cosine(sin_inside);
@@ -89,7 +89,7 @@ typedef struct hair_shares {
     double of[HAIR_LOBES][3], mean[HAIR_LOBES];
 } hair_shares;
 
-static hair_shares shares_of(const hair_passage *w)
+static hair_shares shares_of(const hair_crossing *w)
 {
     hair_shares shares;
     double f = w->reflected;
@@ -106,7 +106,7 @@ static hair_shares shares_of(const hair_passage *w)
 }
 
 /* How far from the direction's azimuth the lobe's middle is. sense: -1 for the opposite offset. */
-static double turn_of(const hair_passage *w, int lobe, double sense)
+static double turn_of(const hair_crossing *w, int lobe, double sense)
 {
     return sense * (2.0 * lobe * w->gamma_inside - 2.0 * w->gamma) + lobe * HALF_TURN;
 }
@@ -188,12 +188,12 @@ hair_point hair_point_at(const hair_fibre *fibre, rgb sigma_a, float v, vec3 out
 {
     hair_point p = {.fibre = fibre, .sigma_a = sigma_a, .offset = v, .sine = out.x, .surface = HAIR_FACES_RAYS};
     p.azimuth = angle_of((double)out.z, (double)out.y);
-    p.passage = passage_of(&p, offset_of(v), inclination_of(out.x));
+    p.crossing = crossing_of(&p, offset_of(v), inclination_of(out.x));
     return p;
 }
 
-/* From o, whose passage it is, to i, which lies so far about the axis from it. sense: as in turn_of. */
-static void lobe_values(const hair_fibre *h, const hair_passage *of_o, inclination o, inclination i, double turn,
+/* The lobes' values from o, whose crossing is of_o, to i, at the azimuth turn from it. sense: as in turn_of. */
+static void lobe_values(const hair_fibre *h, const hair_crossing *of_o, inclination o, inclination i, double turn,
                         double sense, double out[HAIR_LOBES])
 {
     for (int k = 0; k < HAIR_LOBES; k++) {
@@ -227,18 +227,18 @@ void hair_evaluate(const hair_point *p, bool is_flux, bool is_same_side, vec3 di
     inclination o = inclination_of(p->sine), i = inclination_of(direction.x);
     double turn = angle_of((double)direction.z, (double)direction.y) - p->azimuth, values[HAIR_LOBES];
     double sum[3] = {0.0, 0.0, 0.0}, density = 0.0, all = 0.0, narrower = 1.0;
-    hair_shares carried = shares_of(&p->passage);
+    hair_shares carried = shares_of(&p->crossing);
     for (int k = 0; k < HAIR_LOBES; k++)
         all += carried.mean[k];
     for (int own = 0; own < 2; own++) {
         double share = own ? share_of_own_offset(p, is_flux) : 1.0 - share_of_own_offset(p, is_flux);
         if (share > 0.0)
-            lobe_values(p->fibre, &p->passage, o, i, turn, own ? -1.0 : 1.0, values);
+            lobe_values(p->fibre, &p->crossing, o, i, turn, own ? -1.0 : 1.0, values);
         for (int k = 0; share > 0.0 && k < HAIR_LOBES; k++)
             density += share * values[k] * carried.mean[k];
     }
     if (is_flux) {
-        const hair_passage of_eye = passage_of(p, offset_left_at(p, is_same_side), i);
+        const hair_crossing of_eye = crossing_of(p, offset_left_at(p, is_same_side), i);
         carried = shares_of(&of_eye);
         lobe_values(p->fibre, &of_eye, i, o, -turn, 1.0, values);
         narrower = p->surface == HAIR_FACES_RAYS ? i.cosine / fmax(o.cosine, 1e-6) : 1.0;
@@ -255,7 +255,7 @@ vec3 hair_sample(const hair_point *point, bool is_flux, float u_lobe, vec2 u)
     double all = 0.0, before = 0.0, p = 0.0, x = (double)u_lobe;
     int lobe = 0;
     const hair_fibre *h = point->fibre;
-    const hair_shares shares = shares_of(&point->passage);
+    const hair_shares shares = shares_of(&point->crossing);
     double own = share_of_own_offset(point, is_flux), sense = x < own ? -1.0 : 1.0;
     x = x < own ? x / own : (x - own) / (1.0 - own);
     for (int k = 0; k < HAIR_LOBES; k++)
@@ -271,7 +271,7 @@ vec3 hair_sample(const hair_point *point, bool is_flux, float u_lobe, vec2 u)
     double sine = sample_longitudinal(tilted(h, o, lobe), h->precision[lobe], u), cosine = sine_to_cosine(sine);
     double turn = TWO_PI * x;
     if (lobe < HAIR_TILTED)
-        turn = turn_of(&point->passage, lobe, sense) + sample_azimuthal(x, h->width);
+        turn = turn_of(&point->crossing, lobe, sense) + sample_azimuthal(x, h->width);
     turn = (turn + point->azimuth) / TWO_PI;
     float sin_turn, cos_turn;
     sincos_turns((float)(turn - floor(turn)), &sin_turn, &cos_turn);

@@ -22,13 +22,12 @@ typedef struct hair_fibre {
     double sin_tilt[HAIR_TILTED], cos_tilt[HAIR_TILTED]; /* of once, twice and four times the scales' angle */
 } hair_fibre;
 
-/* The passage of light along one direction into the fibre and across it, from which the lobes' shares and centres
- * follow. */
-typedef struct hair_passage {
+/* How light along one direction enters and crosses the fibre; the lobes' shares and centres follow from it. */
+typedef struct hair_crossing {
     double reflected;           /* by the surface */
     double left[3];             /* transmittance of each channel after one crossing */
     double gamma, gamma_inside; /* angles of the ray to the normal, outside and within, across the fibre */
-} hair_passage;
+} hair_crossing;
 
 /* Which surface has the fibre as its material: this decides how an offset across it appears from another direction. */
 typedef enum hair_surface {
@@ -41,11 +40,11 @@ typedef enum hair_surface {
 /* A point of a fibre, and a direction of light scattered there. */
 typedef struct hair_point {
     const hair_fibre *fibre;
-    double azimuth;       /* of the direction: its angle about the axis */
-    hair_passage passage; /* of the direction */
-    rgb sigma_a;          /* absorbed per radius of the path within */
-    float offset;         /* across the fibre, from 0 to 1 */
-    float sine;           /* of the direction's inclination */
+    double azimuth;         /* of the direction: its angle about the axis */
+    hair_crossing crossing; /* of the direction */
+    rgb sigma_a;            /* absorbed per radius of the path within */
+    float offset;           /* across the fibre, from 0 to 1 */
+    float sine;             /* of the direction's inclination */
     hair_surface surface;
 } hair_point;
 

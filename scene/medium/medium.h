@@ -23,17 +23,17 @@ typedef enum medium_kind {
 
 /* --- the kinds --- */
 
-/* Of a medium that is the same all over. */
-typedef struct homogeneous_matter {
+/* The parameters of a medium that is the same all over. */
+typedef struct homogeneous_parameters {
     rgb sigma_a; /* share of the light that is absorbed per unit of the way, 1 / scene unit, >= 0 and finite */
     rgb sigma_s; /* share of the light that is scattered, likewise */
-} homogeneous_matter;
+} homogeneous_parameters;
 
 typedef struct medium {
     medium_kind kind;
     phase_function phase; /* into which directions it scatters, the same all over */
     union {
-        homogeneous_matter homogeneous;
+        homogeneous_parameters homogeneous;
     } as;
 } medium;
 

@@ -46,9 +46,9 @@ static ag_status set_absorption(pbrt_parser *parser, const parameter_list *list,
 
 static ag_status set_scattering(pbrt_parser *parser, const parameter_list *list, rgb sigma_s, double scale, medium *m)
 {
-    homogeneous_matter *matter = &m->as.homogeneous;
-    matter->sigma_s = scaled(sigma_s, scale);
-    return rgb_is_finite(rgb_add(matter->sigma_a, matter->sigma_s))
+    homogeneous_parameters *p = &m->as.homogeneous;
+    p->sigma_s = scaled(sigma_s, scale);
+    return rgb_is_finite(rgb_add(p->sigma_a, p->sigma_s))
                ? AG_OK
                : pbrt_refuse(parser, list, "scale", "it scatters more than a float holds");
 }
