@@ -100,7 +100,8 @@ AVX512 static uint32_t find_leaves(const photon_query *q, photon_subtree subtree
     uint32_t is_met = _mm512_mask_cmp_ps_mask(_mm512_cmp_ps_mask(beyond, _mm512_set1_ps(most), _CMP_LE_OQ), beyond,
                                               _mm512_set1_ps(INFINITY), _CMP_LT_OQ);
     if (!(nodes[first].split < INFINITY))
-        is_met &= 0x00ff; /* the planes beyond need not be at infinity, too: of so many levels the tree says nothing */
+        is_met &= 0x00ff; /* Nothing is right of a plane at infinity. Planes there may be finite: the tree promises
+                             three levels, not four. */
     uint32_t base = 2 * fourth + 1 - ((1u << q->tree->depth) - 1);
     return store_some(out_leaves, _mm512_add_epi32(_mm512_set1_epi32((int)base), avx512_lanes()), (__mmask16)is_met);
 }
@@ -152,7 +153,8 @@ AVX512 static inline vec3_16 positions_of(const photon_block *b)
     return (vec3_16){_mm512_load_ps(b->position[0]), _mm512_load_ps(b->position[1]), _mm512_load_ps(b->position[2])};
 }
 
-/* Each leaf is written, but those without photons are overwritten: whether there are any is as good as random. */
+/* Writes every leaf, and goes on to the next place only behind one in which photons were found, by arithmetic: a branch
+ * on that would be predicted badly. */
 AVX512 static uint32_t collect(photon_query *q, const uint32_t *leaves, uint32_t leaf_count, photon_found *f)
 {
     const __m512 none = _mm512_set1_ps(NAN), limit = _mm512_set1_ps(f->limit);

@@ -171,8 +171,8 @@ static ag_status make_map(run_context *run, const scene *surfaces, const fingerp
     return photon_map_create(run, &set, &settings, 0.0, 0.0, out_map);
 }
 
-/* Adds estimates and slots' words at irradiance photons; and estimates beside them, where no photon is the nearest by
- * nothing. */
+/* Adds estimates and slots' words, in turn at an irradiance photon, and a little beside one, where the nearest photon
+ * is not at distance 0. */
 static void add_estimates(const photon_map *map, irradiance_estimate_fn *find, photon_neighbor *scratch, hash128 *hash)
 {
     const photon_block *blocks = map->irradiance_photons.blocks;

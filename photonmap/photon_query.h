@@ -29,8 +29,8 @@ typedef struct photon_visit {
 } photon_visit;
 
 typedef struct photon_query {
-    photon_lanes at;
-    float position[3]; /* the same */
+    photon_lanes at;   /* the point, in lanes */
+    float position[3]; /* its coordinates one by one */
     const photon_tree *tree;
     vec3 normal;
     float min_cos;

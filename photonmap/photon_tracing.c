@@ -41,7 +41,7 @@ static void trace_block(void *user, uint64_t begin, uint64_t end, uint64_t block
     for (uint64_t i = begin; i < end && !run_is_cancelled(job->run); i++)
         photon_path_trace(&t, job->first_path + i);
     out.paths = end - begin;
-    out.is_cut = run_is_cancelled(job->run); /* or just behind the last path, which does no harm */
+    out.is_cut = run_is_cancelled(job->run); /* a cancel just behind the last path counts as well: harmless */
     job->blocks[block_index] = out;
 }
 

@@ -188,7 +188,7 @@ static ag_status open_or_lock(const map_request *r, trace_lock *lock, opened_map
                 return AG_CANCELLED;
             nanosleep(&poll, NULL);
         }
-        /* and once more: it may have been made just before */
+        /* the file may have been made just before the lock was free, so it is looked for once more */
     }
 }
 

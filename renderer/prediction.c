@@ -74,7 +74,7 @@ static ag_status measure_pixel(ag_context *context, const scene *s, const ag_ren
         const aov_layout *layout = &small.film->layout;
         for (int i = film_planes(small.film, planes) - 1; i >= 0; i--)
             bytes += (double)planes[i].size;
-        *out_film_bytes = bytes / pixel_count + 3.0 * sizeof(float); /* and the picture */
+        *out_film_bytes = bytes / pixel_count + 3.0 * sizeof(float); /* 3 floats: the finished picture */
         *out_file_bytes = 0.0;
         for (int c = 0; c < layout->channel_count; c++)
             *out_file_bytes += sizeof(float) + ZIPPED_SHARE * (layout->channels[c].is_exact ? 4.0 : 2.0);
@@ -122,7 +122,8 @@ static ag_status predict_memory(ag_context *context, const scene *s, const ag_re
     out->memory_photon_bytes =
         (uint64_t)(BYTES_PER_PHOTON * photons + (has_map ? aim_bytes_of(s, settings) : 0.0)) + spaces;
     out->memory_thread_bytes = (uint64_t)(thread * threads);
-    out->memory_film_bytes = (uint64_t)(film * pixels * (settings->photon_map_file ? 2.0 : 1.0)); /* and its copy */
+    /* with a kept map, the film of a finished pass is copied */
+    out->memory_film_bytes = (uint64_t)(film * pixels * (settings->photon_map_file ? 2.0 : 1.0));
     out->memory_host_bytes = context->host_bytes;
     out->memory_file_bytes = (uint64_t)(file * pixels);
     const uint64_t rendering = out->memory_photon_bytes + out->memory_thread_bytes;

@@ -418,7 +418,7 @@ void ag_rendering_finish(ag_rendering *r, ag_film **out_film)
     free(r);
     context_add_to_phase(context, AG_PHASE_RENDER, begin);
     if (--loaded->rendering_count == 0 && loaded->is_dropped)
-        ag_scene_destroy(loaded); /* and the context with it, where that was destroyed before */
+        ag_scene_destroy(loaded); /* destroys the context too, where that was let go before */
 }
 
 ag_status ag_render(ag_context *context, const ag_scene *loaded, const ag_render_settings *settings, ag_film **out_film)

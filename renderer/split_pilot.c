@@ -71,7 +71,7 @@ ag_status split_pilot_run(ag_rendering *r)
                           .is_pilot = true};
     if (!r->pilot) {
         ag_status made = create_film(&pilot);
-        r->pilot = pilot.film; /* and is freed with the rendering */
+        r->pilot = pilot.film; /* owned by the rendering, which frees it */
         AG_TRY(made);
     }
     pilot.t.settings = &pilot.settings;

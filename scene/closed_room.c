@@ -8,12 +8,12 @@
 enum { GRID = 12, HEIGHTS = 3, DIRECTIONS = 64, HEADINGS = 32, OPEN_HEADINGS_MAX = 4, PANES_MAX = 16 };
 static const float HEIGHT_SHARES[HEIGHTS] = {0.45f, 0.25f, 0.7f};
 
-static const float ENCLOSED = 0.85f; /* in a room, the least share of directions that end at a surface */
-static const float FACING =
-    0.7f; /* the share of these that meets the front of walls which are modelled with two sides, */
-static const float ON_BOUNDS = 0.5f;        /* or the share that ends on the bounds, */
-static const float CONTENT = 0.01f;         /* and the share that ends at the front of what stands inside */
-static const float ON_BOUNDS_REACH = 0.01f; /* of the bounds' width */
+/* Least shares of the directions from a place in a room. */
+static const float ENCLOSED = 0.85f; /* that end at a surface */
+static const float FACING = 0.7f;    /* of these, that end at a surface's front, where walls have two sides */
+static const float ON_BOUNDS = 0.5f; /* of these, that end on the bounds, where walls have one side */
+static const float CONTENT = 0.01f;  /* of these, that end at the front of things inside, where walls have one side */
+static const float ON_BOUNDS_REACH = 0.01f; /* of the bounds' width: what is so near to them lies on them */
 static const float ELBOW_ROOM = 0.02f;      /* nothing is nearer to the eye than this share of the diagonal */
 static const float EYE_HEIGHT = 0.5f;       /* between floor and ceiling */
 static const float LAMP_HEIGHT = 0.85f;     /* between floor and ceiling */

@@ -34,10 +34,10 @@ typedef struct scene_reuse {
 
 typedef struct scene {
     working_space space;                     /* of all its colours; settled before anything is read */
-    const struct color_config *color_config; /* that names it, and tells how pictures are encoded; borrowed for as long
-                                                as it is read; NULL: none */
-    const definitions *definitions;          /* of names in its text; borrowed for as long; NULL: none */
-    const scene_request *request;            /* likewise; NULL: nothing is asked for */
+    const struct color_config *color_config; /* names the space, and tells how pictures are encoded; borrowed while the
+                                                scene is read; NULL: none */
+    const definitions *definitions;          /* of names in its text; borrowed while it is read; NULL: none */
+    const scene_request *request;            /* borrowed for as long as it is read; NULL: nothing is asked for */
     /* The scene that this one replaces after edits: its pictures, tables and trees are shared where they would be the
      * same. Borrowed until the commit is done; or NULL. */
     struct scene *before;

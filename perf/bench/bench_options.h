@@ -13,7 +13,7 @@ typedef struct bench_options {
     bench_size size;
     bool allows_busy, is_quiet;
     unsigned levels[BENCH_LEVELS_MAX], level_count; /* 0: by the machine; else ascending, 1 among them */
-    const char *json_path, *page_path;              /* or NULL */
+    const char *json_path, *page_path;              /* NULL: no such file is written */
     const char *compared[2];
 } bench_options;
 

@@ -27,8 +27,8 @@ enum {
     CONNECT_PATIENCE_MS = 3000,   /* for a host that does not answer */
     RETRY_MS = 2000,              /* between attempts to connect */
     SEND_PATIENCE_MS = 30000,     /* for a viewer that is busy, while there is still work to do */
-    LEAVE_PATIENCE_MS = 5000,     /* and when it alone is waited for, and takes nothing */
-    LEAVE_TOTAL_MS = 10000,       /* and takes something now and then */
+    LEAVE_PATIENCE_MS = 5000,     /* for one that takes nothing, when nothing else is left to do */
+    LEAVE_TOTAL_MS = 10000,       /* for one that takes something now and then, when nothing else is left to do */
     SEND_BUFFER_BYTES = 256 << 10 /* what the kernel holds back for a slow viewer */
 };
 
@@ -53,7 +53,7 @@ struct display_server {
     int socket; /* -1: none */
     int64_t next_attempt_ms;
     uint64_t opened_turn;  /* which film the viewer has a picture of; 0: none */
-    char opened_name[512]; /* and under which name */
+    char opened_name[512]; /* the name of that picture */
 };
 
 static int64_t now_ms(void)

@@ -1,5 +1,5 @@
-/* page_wishes.h: what who watches the render by a browser asks for: to stop and keep, to see from elsewhere, to go back
- * to the picture, to see a layer. The rendering under way is paused, so that main looks here.
+/* page_wishes.h: what those ask for who watch the render in a browser: to stop and keep the picture, to see the scene
+ * from elsewhere, to go back to the picture, to see a layer. A wish pauses the rendering, so that main looks here.
  * Flow: page_server (requests) -> [here] -> passes, walk. Threads: any; one lock, which is held for no work. */
 #ifndef AFTERGLOW_PAGE_WISHES_H
 #define AFTERGLOW_PAGE_WISHES_H
@@ -27,7 +27,7 @@ typedef struct page_wishes {
     double heard_seconds; /* when there was a request last, as passes_seconds tells it; below 0: never */
 } page_wishes;
 
-/* False: the system gives no lock. */
+/* Returns false where the system gives no lock. */
 bool page_wishes_init(page_wishes *w);
 void page_wishes_reset(page_wishes *w);
 
@@ -39,12 +39,12 @@ void page_wishes_layers(page_wishes *w);
 void page_wishes_hear(page_wishes *w);
 
 /* --- main --- */
-/* Tells whose rendering pauses for a wish; NULL: nobody's, and what was wished for is forgotten. An end that is wished
- * for before there is a film is one of the next. */
+/* Sets the context whose rendering a wish pauses. NULL: none, and what was wished for is forgotten. A wish to end that
+ * comes before there is a film is kept for the next one. */
 void page_wishes_attend(page_wishes *w, ag_context *context);
-/* Whether it was wished for; a move, a return and layers are taken with that. */
+/* Return whether there is such a wish. Those with `take` in their names also remove it. */
 bool page_wishes_has_end(page_wishes *w);
-/* Whether it has ever been wished to stop, also for a picture before this one. */
+/* Returns whether anybody has ever wished to stop, also for a picture before this one. */
 bool page_wishes_has_ended(page_wishes *w);
 bool page_wishes_has_move(page_wishes *w);
 bool page_wishes_take_return(page_wishes *w);
@@ -52,7 +52,7 @@ bool page_wishes_take_move(page_wishes *w, page_place *out_place);
 bool page_wishes_take_layers(page_wishes *w);
 /* Returns when there is a wish, or after so many seconds. */
 void page_wishes_wait(page_wishes *w, double seconds);
-/* Whether there has been a request within so many seconds: somebody watches. */
+/* Returns whether somebody watches: there has been a request within so many seconds. */
 bool page_wishes_is_watched(page_wishes *w, double seconds);
 
 #endif

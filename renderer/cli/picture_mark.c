@@ -15,8 +15,8 @@
 
 static const char UNFINISHED[] = ".afterglow-unfinished", CHECKPOINT[] = ".afterglow-checkpoint";
 
-/* The picture's name with the suffix. Where that is longer than a file's name may be, the end of the picture's name is
- * replaced by a number made of all of it (FNV-1a). */
+/* Returns the picture's name with the suffix, or NULL; to be freed. Where that is longer than a file's name may be, the
+ * end of the picture's name is replaced by a hash of all of it (FNV-1a). */
 static char *beside(const char *outfile, const char *suffix)
 {
     enum { HASH_LENGTH = 17 }; /* a hyphen and 16 digits */
@@ -39,8 +39,8 @@ char *picture_mark_checkpoint(const char *outfile) { return beside(outfile, CHEC
 
 char *picture_mark_name(const char *outfile) { return beside(outfile, UNFINISHED); }
 
-/* The mark itself; 0 or -1 with errno. A mark that cannot be filled goes again: the picture that was there before, and
- * stays then, may be complete. */
+/* Writes the mark; returns 0, or -1 with errno. A new mark that cannot be filled is removed, for the unfinished picture
+ * is not written then, and the one before it, which stays, may be complete. */
 static int write_mark(const char *name)
 {
     static const char TEXT[] = "The picture beside this file is what there was before its render was complete.\n";

@@ -269,7 +269,7 @@ static void follow(const transport *t, eye_worker *worker, const camera_sample *
             add_diffuse(t, sample, &diffuse, &path, by_group);
         }
 
-        /* the others are traced on */
+        /* mirrors, glass and glossy lobes: the path goes on, maybe in several branches */
         bool is_last = eye_path_is_last(t, &path);
         uint32_t bits = is_last ? 0 : branch_bits(t, &path, &v);
         if (wants_all && !is_last && bsdf_has(&v.scattering, BSDF_TRACED) &&

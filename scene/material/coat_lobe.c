@@ -8,7 +8,7 @@
 #include <string.h>
 
 enum {
-    WALKS = 8192,      /* and as many samples of the lobe, for the breadth */
+    WALKS = 8192,      /* between the layers, to measure the breadth; also samples of the lobe, held against them */
     LOBE_FACETS = 512, /* of the lobe, for the scales, for each cosine */
     ROUNDS = 100       /* of scaling */
 };

@@ -16,8 +16,8 @@ typedef struct material {
 
     /* Set by scene_add_material: */
     bool is_textured;   /* it has any of MATERIAL_TEXTURE_LIST */
-    bool is_lambertian; /* and nothing else, uniform, and nothing tilts its shading normal: some code needs no bsdf then
-                           (shortcuts.md) */
+    bool is_lambertian; /* it is uniform and Lambertian alone, and nothing tilts its shading normal: some code needs no
+                           bsdf then (shortcuts.md) */
     const void *table;  /* precomputed table of its kind, NULL: none (material_table.h) */
     rgb dielectric_f0;  /* principled: of facets at normal incidence; at grazing they reflect `specular` */
     float base_through; /* principled: share of diffuse light from outside that reaches the diffuse base */

@@ -91,7 +91,7 @@ enum { MATERIAL_HASH_FORM = 1 };
     X(int, coat_bounces, 0)              /* most reflections by the base under the coat, 0: unbounded */               \
     X(rgb, hair_sigma_a, rgb_gray(0.0f)) /* absorption per radius within a fibre, >= 0; ior is the fibre's */          \
     X(float, hair_beta_m, 0.3f)          /* roughness along the fibre, [0, 1] */                                       \
-    X(float, hair_beta_n, 0.3f)          /* and about it, [0, 1] */                                                    \
+    X(float, hair_beta_n, 0.3f)          /* roughness about the fibre, [0, 1] */                                       \
     X(float, hair_tilt_degrees, 2.0f)    /* of its scales */                                                           \
     X(float, mix_amount, 0.5f)           /* mix: the share of the second, [0, 1] */                                    \
     /* Of principled materials, whose reflectance is the base colour, and ior >= 1 or 0 (infinite): */                 \

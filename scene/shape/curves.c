@@ -75,7 +75,7 @@ typedef struct axis_point {
     double p[3], d[3], dd[3]; /* the middle line, and its derivatives by u */
     double t[3];              /* unit, along it */
     double speed;             /* |d| */
-    double radius, slope;     /* and its derivative by u */
+    double radius, slope;     /* slope: the radius's derivative by u */
 } axis_point;
 
 static double dot(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }

@@ -34,7 +34,7 @@ typedef struct mesh {
     uint32_t motion_segments;
     vec3 *positions;
     vec3 *normals;          /* unit shading normals, or NULL */
-    vec2 *uvs;              /* or NULL */
+    vec2 *uvs;              /* NULL: none */
     vec3 *tangents;         /* of any length, for the shading frame alone, or NULL: then uvs say which way they go */
     uint32_t *indices;      /* 3 per triangle, each < vertex_count */
     float *area_cdf;        /* of emissive meshes, else NULL: [triangle_count], running sum of areas over the total */
@@ -117,9 +117,9 @@ void mesh_reset(mesh *m);
 ag_status shape_share(shape *s, shape *out_other);
 /* Whether rays would meet the same: surfaces that share their arrays, or are equal by their few numbers. */
 bool shape_has_same_surface(const shape *a, const shape *b);
-/* Whether meshes or curves hold equal arrays; the arrays of another that are equal then take the place of a shape's
- * own. Errors: AG_ERROR_MEMORY. */
+/* Returns whether two meshes, or two curves, hold equal arrays and do not share them yet. */
 bool shape_equals(const shape *s, const shape *other);
+/* Puts the arrays of an equal shape in the place of a shape's own, so that both share them. Errors: AG_ERROR_MEMORY. */
 ag_status shape_share_arrays(shape *from, shape *in_out_shape);
 /* Returns a hash of the arrays that a mesh borrows, to detect writes; 0: it borrows none, or they cannot be read. */
 uint64_t shape_hash_borrowed(const shape *s);
@@ -139,16 +139,16 @@ static inline float mesh_area_share(const mesh *m, uint32_t triangle)
 uint32_t shape_pick_triangle(const shape *s, float *in_out_u);
 /* Returns the sample at a point of a mesh's triangle. barycentrics: the weights of its second and third corner. */
 surface_sample shape_sample_triangle(const shape *s, uint32_t triangle, vec2 barycentrics);
-/* The whole hit at a sampled point; distance is 0. */
+/* Computes the whole hit at a sampled point; distance is 0. */
 void shape_sample_surface(const shape *s, uint32_t shape_index, const surface_sample *sample, surface_hit *out_hit);
 /* Returns the numbers in [0, 1) by which shape_sample_area picks that point of a triangle of such a mesh. */
 vec2 shape_sample_numbers(const shape *s, uint32_t triangle, vec2 barycentrics);
-/* Back from a point to the random numbers that pick it. false for shapes that are no mesh. */
+/* Finds the random numbers by which shape_sample_area picks a point. Returns false for shapes that are no mesh. */
 bool shape_sample_inverse(const shape *s, const surface_hit *hit, vec2 *out_u);
-/* The density of shape_sample_area at a point on the shape with that geometric normal. */
+/* Returns the density, 1/m^2, of shape_sample_area at a point on the shape with that geometric normal. */
 float shape_pdf_area(const shape *s, vec3 geometric_normal);
 
-/* The hit that Embree has found, for rays_embree.c: fills in everything but distance, indices and time. u, v:
+/* Completes a hit that Embree has found, for rays_embree.c: all but distance, indices and time. u, v:
  * Embree's barycentrics for meshes, u along curves; for all but meshes `position` comes in as the ray's point and is
  * put onto the surface. direction: the ray's, of any length; read for curves alone. time: of the shutter, [0, 1]. */
 void shape_surface_at(const shape *s, uint32_t primitive_index, float u, float v, vec3 position, vec3 direction,
@@ -156,8 +156,8 @@ void shape_surface_at(const shape *s, uint32_t primitive_index, float u, float v
 /* shape_surface_at, but uv may be missing. */
 void shape_hit_at(const shape *s, uint32_t primitive_index, float u, float v, vec3 position, vec3 direction, float time,
                   surface_hit *out_hit);
-/* Position, geometric normal and epsilon alone, as the same have them, but for the normal's side; false: not of this
- * kind of shape, nor where its vertices move. */
+/* Computes the position, geometric normal and epsilon alone, as shape_hit_at does, but for the normal's side. Returns
+ * false for curves, for quadrics that are no true spheres, and where vertices move. */
 bool shape_bare_point_at(const shape *s, uint32_t primitive_index, float u, float v, vec3 position,
                          surface_point *out_point);
 

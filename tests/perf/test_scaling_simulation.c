@@ -40,7 +40,7 @@ static void test_one_worker(void **state)
     assert_int_equal(run.deferred, 0);
     assert_int_equal(run.waited, 0);
     double expected = (double)run.requests * even.own_s + (double)run.computed * (even.claim_s + even.estimate_s);
-    expect_near(run.seconds, expected, 0.01 * expected); /* and looks at slots */
+    expect_near(run.seconds, expected, 0.01 * expected); /* 1 %: looks at slots */
     assert_true(run.seconds > expected);
     expect_near(run.idle_s, 0.0, 1e-9);
     /* distinct ones of so many drawn: mean by the formula, deviation below the root of the mean */

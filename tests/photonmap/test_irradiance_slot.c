@@ -35,7 +35,7 @@ static void a_claim_is_published(void **state)
     assert_int_equal(irradiance_slot_read(&slot), irradiance_word(IRRADIANCE_CLAIMED, 5));
     assert_true(irradiance_slot_publish(&slot, 5, irradiance_word(IRRADIANCE_READY, IRRADIANCE_VALUE_MASK)));
     assert_int_equal(irradiance_slot_read(&slot), irradiance_word(IRRADIANCE_READY, IRRADIANCE_VALUE_MASK));
-    /* and ready is final */
+    /* a ready word is final */
     assert_false(irradiance_slot_publish(&slot, 5, irradiance_word(IRRADIANCE_READY, 1)));
     assert_false(irradiance_slot_try_claim(&slot, 5, &word));
     assert_int_equal(word, irradiance_word(IRRADIANCE_READY, IRRADIANCE_VALUE_MASK));

@@ -162,7 +162,7 @@ static void coincident_photons_give_finite_values(void **state)
     rgb e = irradiance_estimate(&map, at, up, scratch);
     assert_true(rgb_is_finite(e));
     assert_relative(e.g, NEAREST * 128.0 / (PI * (double)map.min_radius_squared), 1e-5);
-    /* and the slot can hold it */
+    /* a slot can hold so large a value */
     rgb kept = photon_map_decode_irradiance(&map, photon_map_encode_irradiance(&map, e, 7));
     assert_relative(kept.g, e.g, 1 / 127.0);
     free(scratch);

@@ -169,7 +169,7 @@ static void the_radius_is_inclusive(void **state)
     assert_int_equal(photon_tree_nearest(&tree, origin, up, 0.5f, 4.999f, &d), PHOTON_NONE);
     assert_int_equal(photon_tree_k_nearest(&tree, origin, up, 0.5f, 5.0f, 5, n, &d), 1);
     assert_int_equal(photon_tree_k_nearest(&tree, origin, up, 0.5f, 4.999f, 5, n, &d), 0);
-    /* and the cosine is not */
+    /* the cosine has to be above its bound */
     assert_int_equal(photon_tree_nearest(&tree, origin, up, 1.0f, 5.0f, &d), PHOTON_NONE);
     free(n);
     photon_tree_reset(&tree);

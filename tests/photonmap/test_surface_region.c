@@ -127,7 +127,7 @@ static void a_ball_has_no_edge(void **state)
         assert_false(
             surface_region_find(s, NULL, vec3_add((vec3){5.0f, 0.0f, 0.0f}, n), n, 0.5f, 0.4f, &rays, &region));
     }
-    /* and where there is no surface there is no region */
+    /* where there is no surface there is no region */
     surface_region region;
     assert_false(surface_region_find(s, NULL, (vec3){0.0f, 0.5f, 0.0f}, UP, 0.5f, 0.4f, &rays, &region));
     scene_destroy(s);

@@ -61,7 +61,7 @@ static void test_parts_and_sizes_have_the_same_photons(void **state)
     PHOTONS_OF("default.ply", AIMED, scene);
     expect_same_files("whole.ply", "default.ply");
 
-    /* and others for another aim, frame or view */
+    /* another aim, frame or view has other photons */
     PHOTONS_OF("none.ply", BY_POWER, scene);
     PHOTONS_OF("wide.ply", "--size=64x32", scene);
     PHOTONS_OF("moved.ply", room_from_beside());

@@ -85,7 +85,7 @@ static void test_pbrt(void **state)
     /* what is not there is refused in the same words, so that nobody can find out */
     expect_refused("13.pbrt", BEGIN "Include \"../nothing.pbrt\"\n");
     expect_refused("14.pbrt", BEGIN "Include \"../nowhere/nothing.pbrt\"\n");
-    /* but within the folder all is as ever */
+    /* within the folder all can be read */
     write_text("scene/part.pbrt", "Shape \"sphere\"\n");
     write_text("scene/good.pbrt", BEGIN "Include \"part.pbrt\"\nInclude \"sub/../part.pbrt\"\n");
     program_run run = RUN(QUICK, "--confine", "-o", "good.exr", "scene/good.pbrt");

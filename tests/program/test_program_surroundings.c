@@ -362,7 +362,7 @@ static void expect_limited_run(const char *limit, int code)
     snprintf(command, sizeof command, "cd '%s' && ulimit %s && exec '%s' " SHELL_QUICK "--aov=all -o limited.exr " ROOM,
              folder, limit, program_path());
     int how = system(command);
-    assert_true(WIFEXITED(how)); /* and not by a signal */
+    assert_true(WIFEXITED(how)); /* no signal ended it */
     assert_int_equal(WEXITSTATUS(how), code);
 }
 

@@ -70,7 +70,7 @@ static vec3 eye_of(const scene *s)
 #define SOLID                                                                                                          \
     {                                                                                                                  \
         {0, 0, 0}, {6, 3, 4}, false                                                                                    \
-    } /* or one wall, its faces turned out */
+    } /* a block, or one thin wall whose faces are turned out */
 #define WALLS                                                                                                          \
     {                                                                                                                  \
         {-0.2f, -0.2f, -0.2f}, {6.2f, 3.2f, 4.2f}, false                                                               \
@@ -92,7 +92,7 @@ static void the_camera_stands_in_the_room(void **state)
             fail_msg("room %d: the eye is at (%g, %g, %g)", k, (double)eye.x, (double)eye.y, (double)eye.z);
         assert_near(eye.y, 1.5, 0.01);
         assert_true(eye.x < 1.5f || eye.x > 4.5f);      /* near an end of its length */
-        assert_true((eye.x < 3.0f) == (m[0][2] > 0.5)); /* and looks along it */
+        assert_true((eye.x < 3.0f) == (m[0][2] > 0.5)); /* it looks along the length */
         assert_near(m[1][2], 0.0, 1e-6);
         assert_near(m[1][1], 1.0, 1e-6); /* up is up */
         assert_int_equal(r.scene->light_count, 1);

@@ -161,7 +161,7 @@ static void lamps(void **state)
 {
     (void)state;
     reading r = quiet_material_of("Kd 0 0 0\nKe 3 2 1");
-    assert_int_equal(r.scene->light_count, 1); /* and none by default */
+    assert_int_equal(r.scene->light_count, 1); /* the lamp alone: no light is made up */
     assert_int_equal(r.scene->lights[0].kind, LIGHT_AREA);
     assert_true(r.scene->lights[0].as.area.two_sided);
     assert_rgb(r.scene->lights[0].as.area.radiance, 3, 2, 1, 0);

@@ -169,7 +169,7 @@ static void signals_have_their_default_actions(void **state)
     expect_error("crash", SIGTERM, "was ended by signal 15 (Terminated)");
     sigset_t now;
     pthread_sigmask(SIG_SETMASK, &mask_before, &now);
-    assert_true(sigismember(&now, SIGTERM)); /* and those here are as they were */
+    assert_true(sigismember(&now, SIGTERM)); /* signals of this process are as they were */
     sigaction(SIGTERM, &before, NULL);
 }
 

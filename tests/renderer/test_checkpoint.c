@@ -54,7 +54,7 @@ static void test_resumed_bits(void **state)
                 pthread_t thread;
                 assert_int_equal(pthread_create(&thread, NULL, pause_at_times, &pausing), 0);
                 status = ag_rendering_continue(r, part < wanted ? part + 1 : wanted);
-                if (status == AG_PAUSED) /* and once more, in the same process */
+                if (status == AG_PAUSED) /* it goes on in the same process */
                     status = ag_rendering_continue(r, part < wanted ? part + 1 : wanted);
                 store_relaxed_u32(&pausing.has_ended, 1);
                 assert_int_equal(pthread_join(thread, NULL), 0);

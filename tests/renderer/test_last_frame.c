@@ -299,7 +299,7 @@ static void test_taking_over(void **state)
     expect_same(&first, &second, true, 1);
     expect_same(&first, &third, true, 2);
     const ag_statistics s = ag_context_statistics(two.context);
-    /* but for those of which two photons are equally far, or that stand on a plane of the tree */
+    /* not kept are estimates of which two photons are equally far, and photons on a plane of the tree */
     assert_true(s.irradiance_kept > first.count - first.count / 100 && s.photons_came == s.photons_went);
     assert_int_equal(s.irradiance_kept + s.irradiance_computed, first.count);
     assert_int_equal(ag_context_statistics(one.context).irradiance_kept, 0);

@@ -392,7 +392,7 @@ static void wrong_matrices_in_between_are_told(void **state)
     wrong[5] = 0.0;
     assert_int_equal(ag_scene_add_shape(d.made, &ball, NULL), AG_ERROR_ARGUMENT);
     expect_said(&d, "its matrix cannot be undone");
-    wrong[5] = -1.0; /* and back: turned inside out in between alone */
+    wrong[5] = -1.0; /* turned inside out in between alone */
     assert_int_equal(ag_scene_add_shape(d.made, &ball, NULL), AG_ERROR_SCENE);
     expect_said(&d, "turns inside out on its way");
     ball.world_from_shape_end = NULL; /* of nothing any number will do */

@@ -310,7 +310,7 @@ static void directions_are_sampled_by_their_density(void **state)
             assert_true(isinf(at.distance));
             assert_close(vec3_length(at.direction), 1.0, 1e-6);
             rgb seen = light_escaped_radiance(l, point, at.direction);
-            /* but for rounding at the borders of pixels, what is sampled is what is seen */
+            /* what is sampled is what is seen, but for rounding at the borders of pixels */
             strangers += light_escaped_pdf(l, point, at.direction) != at.pdf_solid_angle ||
                          memcmp(&seen, &at.radiance, sizeof seen);
             double inverse = 1.0 / (double)at.pdf_solid_angle / SAMPLES;

@@ -109,7 +109,7 @@ static void directions_are_sampled_by_their_density(void **state)
                 strangers += fabsf(pdf / at.pdf_solid_angle - 1.0f) > 1e-4f || memcmp(&seen, &at.radiance, sizeof seen);
             }
             assert_true(drawn > SAMPLES / 10);
-            /* but for rounding at the borders of pixels and of the window, what is sampled is what is seen */
+            /* what is sampled is what is seen, but for rounding at the borders of pixels and of the window */
             assert_true(outside <= SAMPLES / 1000);
             assert_true(strangers <= SAMPLES / 300);
             double whole = integrate_bins(density, &v, k == 0 ? 40 : 16, bins);

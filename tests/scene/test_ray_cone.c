@@ -73,7 +73,7 @@ static void mirrors(void **state)
     compare_bent(WALL, 3.0f, -1.0f, 0.0f, 2.0f);
     compare_bent(BALL, 3.0f, -1.0f, 0.0f, 2.0f); /* convex: spreads */
     compare_bent(BALL, -0.5f, 1.0f, 0.0f, 0.3f); /* concave, before the focus */
-    compare_bent(BALL, -0.5f, 1.0f, 0.0f, 2.0f); /* and behind it, where the rays have crossed */
+    compare_bent(BALL, -0.5f, 1.0f, 0.0f, 2.0f); /* behind the focus, where the rays have crossed */
     compare_bent("Scale 1 1 2" BALL, 5.0f, -1.0f, 0.0f, 1.0f);
 }
 
@@ -82,7 +82,7 @@ static void glass(void **state)
     (void)state;
     compare_bent(WALL, 3.0f, -1.0f, 1.5f, 2.0f);
     compare_bent(BALL, 3.0f, -1.0f, 1.5f, 1.5f); /* into a ball */
-    compare_bent(BALL, -0.5f, 1.0f, 1.5f, 1.0f); /* and out of one */
+    compare_bent(BALL, -0.5f, 1.0f, 1.5f, 1.0f); /* out of a ball */
 }
 
 /* A mesh with smooth normals, a patch of 2 degrees of the unit sphere, has the sphere's curvature within what its

@@ -106,7 +106,7 @@ static void normals_stay_perpendicular(void **state)
         vec3 m = vec3_normalize(transform_normal(&t, n));
         assert_close(vec3_dot(m, vec3_normalize(transform_vector(&t, f.x))), 0.0, 1e-5);
         assert_close(vec3_dot(m, vec3_normalize(transform_vector(&t, f.y))), 0.0, 1e-5);
-        /* and stay on their side */
+        /* normals stay on their side of the surface */
         assert_true(vec3_dot(m, transform_vector(&t, n)) > 0.0f);
     }
 }

@@ -14,6 +14,7 @@ refuse() { # PATTERN WHY: names the lines of C and C++ sources that match
 }
 
 refuse '^\s*\*/\s*$' "the end of these comments stands alone on its line: shorten the line before it by a word"
+refuse '/\*+ *([Aa]nd|[Bb]ut|[Oo]r|[Ll]ikewise|[Tt]he same)\b' "these comments go on from another: write sentences that stand alone"
 
 if ! command -v clang-format >/dev/null; then
     ((status == 0)) || exit 1

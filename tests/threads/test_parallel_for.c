@@ -116,7 +116,7 @@ static void test_merging_by_block_does_not_depend_on_the_workers(void **state)
         if (k == 0)
             first = total;
         assert_memory_equal(&total, &first, sizeof total);
-        assert_memory_not_equal(&total, &backwards, sizeof total); /* or this test would show nothing */
+        assert_memory_not_equal(&total, &backwards, sizeof total); /* else this test would show nothing */
     }
 }
 

@@ -84,7 +84,7 @@ static void test_every_pixel_once(void **state)
             for (uint32_t t = 0; t < tile_count; t++)
                 assert_int_equal(c.index_times[t], 1);
             tile none;
-            assert_false(tile_scheduler_next(c.scheduler, &none)); /* and it stays so */
+            assert_false(tile_scheduler_next(c.scheduler, &none)); /* there is no tile any more */
             free(c.times);
             free(c.index_times);
             tile_scheduler_destroy(c.scheduler);

@@ -31,7 +31,7 @@ typedef struct ag_context_settings {
     const char *const *confined_to; /* paths of folders, [confined_count], or NULL */
     size_t confined_count;
     ag_log_fn *log;           /* NULL: messages are dropped */
-    ag_progress_fn *progress; /* or NULL */
+    ag_progress_fn *progress; /* may be NULL */
     void *user;               /* passed to log and progress */
 } ag_context_settings;
 

@@ -119,7 +119,7 @@ typedef struct ag_render_settings {
     bool layers_in_camera_space; /* P and normals of AG_LAYER_GBUFFER are in camera space, else in world space */
     float clamp_direct;    /* bound of each component of the light that a sample gets from a lamp by way of at most one
                               surface; 0: unbounded, the default */
-    float clamp_indirect;  /* the same bound for all other contributions */
+    float clamp_indirect;  /* bound of each component of all other light in a sample; 0: unbounded, the default */
     float noise_level;     /* adaptive sampling: a block of 8 by 8 pixels gets no more samples once its standard error,
                               root mean square over the block, is below this level. The error is that of the square
                               root of the value, where white is 1, and relative for brighter values.

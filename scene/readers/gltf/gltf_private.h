@@ -246,15 +246,17 @@ typedef struct gltf_vertices {
     int influence_count;
 } gltf_vertices;
 
-/* *out_vertices is to be closed, on failure too; attributes (the primitive's) and pose must live as long. */
+/* Opens a primitive's vertices. *out_vertices is to be closed, on failure too; attributes (the primitive's) and pose
+ * must live as long. */
 ag_status gltf_vertices_open(gltf_reader *r, const gltf_value *primitive, const gltf_value *attributes, uint32_t uv_set,
                              const gltf_pose *pose, gltf_vertices *out_vertices);
 void gltf_vertices_close(gltf_vertices *v);
-/* Vertex i < count in world space. out_normal NULL or unit, or zero where there is none; out_uv NULL or left alone. */
+/* Reads vertex i < count, in world space. *out_normal is unit, or zero where there is none; *out_uv is left alone where
+ * there is none. Both may be NULL. */
 ag_status gltf_vertices_get(gltf_reader *r, const gltf_vertices *v, uint32_t i, vec3 *out_position, vec3 *out_normal,
                             vec2 *out_uv);
-/* Cofactors of the linear part, of a mirror with the sign changed: what takes normals along. Returns whether it is
- * one. */
+/* Computes the cofactors of the matrix's linear part, which transform normals; their sign is changed where the matrix
+ * mirrors. Returns whether it does. */
 bool gltf_matrix_cofactors(const gltf_matrix *matrix, double out_cofactors[3][3]);
 
 /* gltf_meshes.c: adds a mesh's primitives to the scene. */
@@ -267,7 +269,7 @@ typedef struct gltf_destination {
 
 ag_status gltf_add_mesh(gltf_reader *r, uint32_t mesh_index, const gltf_pose *pose, gltf_destination to);
 
-/* gltf_instances.c: a node's mesh; before that, how many nodes have which. */
+/* gltf_instances.c: first counts how many nodes use each mesh, then adds the mesh of each node. */
 ag_status gltf_count_mesh_use(gltf_reader *r, const gltf_value *node);
 ag_status gltf_add_node_mesh(gltf_reader *r, const gltf_value *node, uint32_t mesh_index,
                              const gltf_matrix *world_from_node);

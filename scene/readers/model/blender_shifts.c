@@ -95,7 +95,7 @@ static bool get_number(const char *tag, const char *name, double *out)
 
 static void read_collada(FILE *file, reading *r)
 {
-    char *tag = NULL; /* and what is behind it, with the next one's < */
+    char *tag = NULL; /* a tag and what follows it, up to and with the next tag's < */
     size_t size = 0;
     double y;
     while (getdelim(&tag, &size, '<', file) >= 0)

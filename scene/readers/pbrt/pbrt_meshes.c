@@ -361,7 +361,7 @@ static ag_status borrow_indices(pbrt_parser *parser, const parameter_list *list,
             return pbrt_refuse(parser, list, "indices",
                                "index %d (value %zu of \"indices\") is out of range, there are %zu vertices",
                                (int)from->indices[i], i + 1, (size_t)m->vertex_count);
-    m->indices = (uint32_t *)(uintptr_t)from->indices; /* likewise */
+    m->indices = (uint32_t *)(uintptr_t)from->indices; /* never written while borrowed */
     m->borrowed |= MESH_BORROWS_INDICES;
     for (size_t i = 0; i < m->triangle_count && all_have_area; i++) {
         vec3 corners[3];

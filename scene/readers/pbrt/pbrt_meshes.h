@@ -9,7 +9,7 @@
 /* A mesh in object space as the file has it. */
 typedef struct pbrt_mesh {
     const double *positions; /* 3 per vertex, of each of the sets */
-    const double *normals;   /* likewise, or NULL */
+    const double *normals;   /* as positions, or NULL */
     const double *uvs;       /* 2 per vertex, or NULL */
     const double *tangents;  /* as positions, or NULL */
     size_t vertex_count;

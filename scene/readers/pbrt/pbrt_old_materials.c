@@ -38,7 +38,7 @@ static bool drop(pbrt_parser *parser, parameter_list *list, const char *type, co
     return is_silent;
 }
 
-/* The kind of "uber" and "plastic", which without gloss are but diffuse. */
+/* Returns the kind that "uber" and "plastic" become: without gloss they are diffuse alone. */
 static const char *plastic_kind(pbrt_parser *parser, parameter_list *list, const char *type)
 {
     static const char *const OF_COAT[] = {"roughness", "uroughness", "vroughness", "eta", "remaproughness"};
@@ -50,7 +50,7 @@ static const char *plastic_kind(pbrt_parser *parser, parameter_list *list, const
     return "diffuse";
 }
 
-/* The amount was that of the first. */
+/* pbrt-v3's "amount" is the share of the first material, pbrt-v4's that of the second. */
 static ag_status upgrade_mix(pbrt_parser *parser, parameter_list *list)
 {
     parameter *first = find(list, "namedmaterial1"), *second = find(list, "namedmaterial2"),

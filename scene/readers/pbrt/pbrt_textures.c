@@ -20,7 +20,7 @@ static const name_table *names_of(const pbrt_parser *parser, bool is_spectrum)
     return is_spectrum ? &parser->spectrum_texture_names : &parser->float_texture_names;
 }
 
-/* The texture that the parameter names; *out_is_there is false where the parameter is none. */
+/* Finds the texture that the parameter names; *out_is_there is false where the parameter names none. */
 static ag_status find_texture(pbrt_parser *parser, parameter_list *list, const char *name, bool is_spectrum,
                               bool *out_is_there, uint32_t *out_index)
 {
