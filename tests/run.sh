@@ -35,15 +35,23 @@ if ((${#presets[@]} == 0)); then
     fi
 fi
 
-# Minutes of a preset's tests: as its last run took, else as measured on two cores of an AMD EPYC that had other work,
-# too. The quick form took 92 s of processor time there.
+form=whole
+((${#selection[@]} == 0)) || form=quick
+
+# The file with the seconds that the last run of a preset's tests took in this form.
+seconds_file() { # PRESET
+    echo "build/$1/test_seconds_$form"
+}
+
+# Minutes of a preset's tests: as long as its last run in this form, else as measured on two cores of an AMD EPYC that
+# had other work, too. The quick form takes about 150 s of processor time there.
 test_minutes() { # PRESET
-    local costs=build/$1/Testing/Temporary/CTestCostData.txt usual=25
+    local seconds usual=25
     case $1 in dev*) usual=5 ;; tsan*) usual=12 ;; esac
-    if ((${#selection[@]} > 0)); then
-        echo $((92 / $(nproc) / 60 + 1))
-    elif [[ -s $costs ]]; then
-        awk -v cores="$(nproc)" 'NF == 3 { seconds += $3 } END { print int(seconds / cores / 60) + 1 }' "$costs"
+    if seconds=$(cat "$(seconds_file "$1")" 2>/dev/null) && [[ $seconds =~ ^[0-9]+$ ]]; then
+        echo $((seconds / 60 + 1))
+    elif [[ $form == quick ]]; then
+        echo $((150 / $(nproc) / 60 + 1))
     else
         echo "$usual"
     fi
@@ -134,10 +142,11 @@ run() { # PRESET
     echo "== $1: tests"
     local results=$root/build/$1/results.xml wrapper=() status=0 kind name reason
     case $1 in dev* | tsan*) wrapper=("${in_place[@]}") ;; esac
+    local begin=$SECONDS
     rm -f "$results"
     "${wrapper[@]}" ctest --preset "$1" --parallel "$(nproc)" --output-junit "$results" "${selection[@]}" </dev/null ||
         status=$?
-    local count=0 failed_before=$failed
+    local seconds=$((SECONDS - begin)) count=0 failed_before=$failed
     if [[ -f $results ]]; then
         while IFS=$'\t' read -r kind name reason; do
             case $kind in
@@ -152,6 +161,8 @@ run() { # PRESET
     if ((count == 0 || (status != 0 && failed == failed_before))); then
         failed=$((failed + 1))
         notes+=("failed: $1: ctest ended with $status after $count tests")
+    else
+        echo "$seconds" >"$(seconds_file "$1")"
     fi
 }
 
