@@ -12,8 +12,8 @@ extern "C" {
 /* How a file stores a value. */
 typedef enum image_sample_type { IMAGE_UINT8, IMAGE_UINT16, IMAGE_HALF, IMAGE_FLOAT } image_sample_type;
 
-/* A picture that was read: packed per pixel, top row first, just one of the two arrays. Integers become floats as parts
- * of the largest there is, 0 to 1; no curve is taken out, no alpha multiplied in. */
+/* A picture that was read: packed per pixel, top row first, in just one of the two arrays. Floats made of integers are
+ * their shares of the largest integer, 0 to 1. No curve is taken out, no alpha multiplied in. */
 typedef struct image {
     int width, height;           /* of the data window */
     int x, y;                    /* of its top left corner in the display window, */
@@ -28,15 +28,15 @@ typedef struct image {
     float chromaticities[8]; /* that the file brings: of red, green, blue, white, each x and y */
 } image;
 
-/* The channels to read of a picture. Its colours are red, green and blue and, where the same layer has it, alpha; all
- * channels where none are named so. */
+/* Which channels of a picture to read. Its colours are red, green and blue and, where the same layer has it, alpha;
+ * where no channels are named so, they are all channels. */
 typedef enum image_wish {
     IMAGE_ALL_CHANNELS,  /* from the colours on, as floats */
     IMAGE_COLORS,        /* as floats */
     IMAGE_COMPACT_COLORS /* as bytes where the file has 8 bits, else as floats */
 } image_wish;
 
-/* Whether reading is to end. Asked by the thread that reads, before each piece of a picture. */
+/* Returns whether reading is to end. The thread that reads calls it before each piece of a picture. */
 typedef bool image_cancelled_fn(const void *user);
 
 typedef struct image_request {
@@ -45,7 +45,7 @@ typedef struct image_request {
     const void *user;                 /* for is_cancelled; borrowed */
 } image_request;
 
-/* A file that holds tiles, and coarser levels as the one before halved. */
+/* A file that holds tiles, and coarser levels, each half as large as the one before. */
 enum { IMAGE_LEVELS_MAX = 32 };
 typedef struct image_level {
     int width, height;

@@ -42,8 +42,8 @@ bool image_encoding_equal(image_encoding a, image_encoding b)
     return a.curve != IMAGE_CURVE_GAMMA || a.gamma == b.gamma;
 }
 
-/* By greys, since OpenColorIO takes colours. The config compiled in, because the encodings' meaning is the scene
- * file's, not that of the user's config. */
+/* Decodes numbers as greys, since OpenColorIO takes colours. It uses the config that is compiled in, because what the
+ * encodings mean is the scene file's matter and not that of the user's config. */
 static ag_status decode_greys(const color_config *config, float *greys, size_t count, char *message,
                               size_t message_size)
 {

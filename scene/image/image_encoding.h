@@ -19,8 +19,8 @@ typedef enum image_curve {
     IMAGE_CURVE_SPACE /* a colour space of the config: see image_colors.h */
 } image_curve;
 
-/* Of integers alone, but for colour spaces: half and float values are linear, whatever it says. Zeroed, it is the
- * default. */
+/* An encoding counts for integers alone: half and float values are linear. Only a colour space counts for these too.
+ * Zeroed, it is the default. */
 typedef struct image_encoding {
     image_curve curve;
     float gamma;       /* linear = encoded ^ gamma; > 0; of IMAGE_CURVE_GAMMA, else 0 */
@@ -28,13 +28,13 @@ typedef struct image_encoding {
     bool is_rule;      /* of IMAGE_CURVE_SPACE: the config's file rules say so, not the scene */
 } image_encoding;
 
-/* "sRGB", "linear" or "gamma NUMBER"; false where the text is none of these. */
+/* Parses "sRGB", "linear" or "gamma NUMBER"; returns false where the text is none of these. */
 bool image_encoding_parse(const char *text, image_encoding *out_encoding);
-/* Whether pictures become the same by both. */
+/* Returns whether two encodings decode every picture alike. */
 bool image_encoding_equal(image_encoding a, image_encoding b);
 
-/* The linear values of the integers 0 to size - 1, of which the last stands for 1. size: 256 or 65536.
- * Errors: AG_ERROR_COLOR, AG_ERROR_MEMORY; text in message. */
+/* Computes the linear values of the integers 0 to size - 1, of which the last stands for 1. size: 256 or 65536. Errors:
+ * AG_ERROR_COLOR, AG_ERROR_MEMORY; text in message. */
 ag_status image_encoding_table(image_encoding encoding, size_t size, float *out_table, char *message,
                                size_t message_size);
 

@@ -16,7 +16,7 @@
 
 enum { OPEN_MAX_COUNT = 64 }; /* files, each with two descriptors: the one it was opened by, and the module's own */
 
-/* A file that parts are read from: the module's, and the descriptor that it was opened by. */
+/* A file of which parts are read: the module's handle, and the descriptor by which it was opened. */
 typedef struct open_levels {
     void *file; /* NULL: there is none */
     int descriptor;
@@ -141,14 +141,14 @@ static bool is_same_header(const image_levels_header *a, const image_levels_head
     return is_same;
 }
 
-/* Opens the picture for the reading of one part; out_open->file is NULL where that fails. Whether the scene may read it
- * was asked of the same file. Errors: as image_levels_read. */
+/* Opens the picture to read one part; out_open->file is NULL where that fails. Whether the scene may read the file was
+ * checked when it was opened first. Errors: as image_levels_read. */
 static ag_status open_again(const image_levels *l, open_levels *out_open)
 {
     struct stat file;
     image_levels_header header;
     AG_TRY(open_file(NULL, l->module, l->path, &l->file, out_open, &header, &file));
-    if (out_open->file && !is_same_header(&l->header, &header)) /* it has changed since it was asked after */
+    if (out_open->file && !is_same_header(&l->header, &header)) /* it has changed since it was opened first */
         close_file(l->module, out_open);
     return out_open->file ? AG_OK : AG_ERROR_INPUT;
 }

@@ -22,12 +22,12 @@ void image_levels_close(image_levels *l); /* NULL is fine */
 
 const image_levels_header *image_levels_describe(const image_levels *l);
 
-/* The tile with its upper left corner at (x, y), of channels [channel_begin, channel_end), as bytes or floats, row by
- * row; what is beyond the picture is left as it is. Errors: AG_ERROR_INPUT, AG_ERROR_MEMORY. */
+/* Reads the tile with its upper left corner at (x, y), of channels [channel_begin, channel_end), as bytes or floats,
+ * row by row; what is beyond the picture is left as it is. Errors: AG_ERROR_INPUT, AG_ERROR_MEMORY. */
 ag_status image_levels_read(image_levels *l, int level, int x, int y, int channel_begin, int channel_end, bool as_bytes,
                             void *out_pixels);
 
-/* Whether the file is still the one that was opened. */
+/* Returns whether the file is still the one that was opened. */
 bool image_levels_is_unchanged(const image_levels *l);
 
 #endif

@@ -38,7 +38,7 @@ typedef struct image_module {
     ag_status (*decode)(const char *path, const char *name, const image_request *request, image *out_image,
                         char *message, size_t message_size);
 
-    /* decode for a file's bytes in memory. extension: of their format, in lower case. */
+    /* Works as decode, on a file's bytes in memory. extension: of their format, in lower case. */
     ag_status (*decode_memory)(const char *extension, const unsigned char *bytes, size_t size,
                                const image_request *request, image *out_image, char *message, size_t message_size);
 

@@ -22,7 +22,7 @@ enum { MESSAGE_SIZE = 2048 };
 static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
 static const image_module *module;
 
-/* Cuts what does not fit. */
+/* Appends a text; what does not fit is cut. */
 static void append(char *text, size_t size, const char *addition)
 {
     size_t length = strlen(text);

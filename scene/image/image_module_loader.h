@@ -5,9 +5,9 @@
 
 #include "image/image_module.h"
 
-/* The module, opened on the first call: from $AFTERGLOW_MODULE_DIR, then from afterglow/ and ../lib/afterglow/ beside
- * the library or program that this code is linked into, then from where it is installed. NULL on failure, with every
- * path that was tried in message; the next call tries again. */
+/* Returns the module, which the first call opens: from $AFTERGLOW_MODULE_DIR, then from afterglow/ and
+ * ../lib/afterglow/ beside the library or program that this code is linked into, then from where it is installed. NULL
+ * on failure, with every path that was tried in message; the next call tries again. */
 const image_module *image_module_get(char *message, size_t message_size);
 
 /* Opens the module as image_module_get does, from these folders only, and without remembering it. */

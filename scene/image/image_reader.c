@@ -42,7 +42,7 @@ static image_request make_request(const run_context *run, image_wish wish)
     return (image_request){.wish = wish, .is_cancelled = run ? is_cancelled : NULL, .user = run};
 }
 
-/* The first bytes tell the format, and the name's end where they do not. */
+/* Decodes a file. Its first bytes tell the format, or else the end of its name. */
 static ag_status decode_file(const image_module *module, const char *opened, const char *path,
                              const image_request *request, image *out_image, char *reason, size_t reason_size)
 {
@@ -97,7 +97,7 @@ ag_status image_read_compact(const run_context *run, const char *path, image *ou
     return read_picture(run, path, IMAGE_COMPACT_COLORS, out_image, message, message_size);
 }
 
-/* NULL: neither of the two that glTF knows. */
+/* Returns the extension of PNG or JPEG bytes, the formats that glTF knows; NULL for others. */
 static const char *extension_of(const unsigned char *bytes, size_t size)
 {
     static const unsigned char PNG[] = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'}, JPEG[] = {0xff, 0xd8, 0xff};
@@ -133,7 +133,7 @@ ag_status image_read_memory(const run_context *run, const char *name, const unsi
     return status;
 }
 
-/* A row of the data window into that of the display window, which has a part of it. */
+/* Copies a row of the data window to its place in the row of the display window, of which it may be a part. */
 static void copy_row(const image *i, int y, size_t pixel_bytes, const unsigned char *from, unsigned char *out)
 {
     const int64_t right = (int64_t)i->x + i->width, row = (int64_t)i->y + y;

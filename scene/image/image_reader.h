@@ -9,9 +9,9 @@
 
 #include <stddef.h>
 
-/* All channels of the first picture of a file, from its colours on; *out_image is to be reset. On failure *out_image is
- * empty and message says why, with OpenImageIO's text. Errors: AG_ERROR_INPUT, AG_ERROR_SYSTEM (the module cannot be
- * opened), AG_ERROR_MEMORY. */
+/* Reads all channels of the first picture of a file, beginning with its colours; *out_image is to be reset. On failure
+ * *out_image is empty and message says why, with OpenImageIO's text. Errors: AG_ERROR_INPUT, AG_ERROR_SYSTEM (the
+ * module cannot be opened), AG_ERROR_MEMORY. */
 ag_status image_read(const char *path, image *out_image, char *message, size_t message_size);
 
 /* image_read of the colours alone: what textures and lights are made of. The file is opened as of input_file_open,
@@ -20,7 +20,7 @@ ag_status image_read(const char *path, image *out_image, char *message, size_t m
 ag_status image_read_colors(const run_context *run, const char *path, image *out_image, char *message,
                             size_t message_size);
 
-/* image_read_colors, but values of 8 bits stay bytes. */
+/* Works as image_read_colors, but values of 8 bits stay bytes. */
 ag_status image_read_compact(const run_context *run, const char *path, image *out_image, char *message,
                              size_t message_size);
 
@@ -33,8 +33,8 @@ ag_status image_read_memory(const run_context *run, const char *name, const unsi
  * Errors: AG_ERROR_INPUT (the picture does not fill a window of more than 2^28 pixels), AG_ERROR_MEMORY. */
 ag_status image_fill_window(image *in_out, const char *name, char *message, size_t message_size);
 
-/* A copy of a picture; as_floats: of bytes their floats, as a file's are read. False, and *out_copy zeroed, when out of
- * memory. */
+/* Copies a picture. as_floats: bytes become floats, as when a file is read. Returns false, with *out_copy zeroed, when
+ * out of memory. */
 bool image_copy(const image *picture, bool as_floats, image *out_copy);
 
 void image_reset(image *picture); /* frees the pixels; leaves it zeroed */

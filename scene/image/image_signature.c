@@ -43,7 +43,7 @@ static const signature SIGNATURES[] = {
     SIGNATURE("fits", 0, "SIMPLE"),
 };
 
-/* Formats without bytes of their own. */
+/* Formats without a signature. */
 static const struct {
     const char *ending, *reader;
 } ENDINGS[] = {{".tga", "targa"}, {".tpic", "targa"}, {".vda", "targa"}, {".icb", "targa"},    {".vst", "targa"},

@@ -10,10 +10,11 @@
 extern "C" {
 #endif
 
-enum { IMAGE_SIGNATURE_BYTES = 16 }; /* how many of the first bytes tell */
+enum { IMAGE_SIGNATURE_BYTES = 16 }; /* how many first bytes are looked at */
 
-/* The reader's name; NULL: it is no picture of a format that is read. path: its ending decides where bytes do not:
- * between formats that have none of their own, and for cameras' raw pictures, which look like TIFF files. */
+/* Returns the name of the format's reader; NULL: it is no picture of a format that is read. path: its ending decides
+ * where bytes do not: between formats that have no signature, and for cameras' raw pictures, which look like TIFF
+ * files. */
 const char *image_signature_reader(const char *path, const unsigned char *bytes, size_t size);
 
 #ifdef __cplusplus

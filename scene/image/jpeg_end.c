@@ -8,7 +8,7 @@
 
 enum { START = 0xd8, SCAN = 0xda, END = 0xd9 };
 
-/* The byte that comes next. */
+/* What the next byte is. */
 typedef enum jpeg_state { SEGMENT_BEGIN, SEGMENT_CODE, LENGTH_HIGH, LENGTH_LOW, IN_SCANS, AT_END } jpeg_state;
 
 typedef struct walk {
@@ -41,7 +41,7 @@ static void step(walk *w, unsigned char byte)
     w->before = byte;
 }
 
-/* Goes over the next bytes of a file, behind the marker that it begins with. */
+/* Takes in the next bytes of a file; the first call begins behind the file's first marker. */
 static void go_on(walk *w, const unsigned char *bytes, size_t size)
 {
     for (size_t k = 0; k < size && w->at != AT_END; k++) {

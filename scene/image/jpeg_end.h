@@ -7,9 +7,9 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-/* Whether bytes begin as a JPEG file and hold the beginning of a scan, but no end of the image behind it. */
+/* Returns whether bytes begin as a JPEG file and hold the beginning of a scan, but no end of the image behind it. */
 bool jpeg_is_cut_short(const unsigned char *bytes, size_t size);
-/* Whether a JPEG file ends before its picture; false where it cannot be read. */
+/* Returns whether a JPEG file ends before its picture does; false where it cannot be read. */
 bool jpeg_file_is_cut_short(const char *path);
 
 #endif

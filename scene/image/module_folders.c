@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The folder of the shared object, or of the program, that this code is part of. */
+/* Finds the folder of the shared object, or of the program, that this code is part of. */
 static bool own_folder(char out_folder[PATH_MAX])
 {
     Dl_info info;

@@ -7,14 +7,14 @@
 
 enum { MODULE_FOLDERS_MAX = 4, MODULE_PATH_MAX = PATH_MAX + 64 };
 
-/* The folders in the order in which they are to be tried. */
+/* Folders in the order in which they are to be tried. */
 typedef struct module_folders {
     char paths[MODULE_FOLDERS_MAX][PATH_MAX + 32];
     int count;
 } module_folders;
 
-/* $AFTERGLOW_MODULE_DIR, then afterglow/ and ../lib/afterglow/ beside the library or program that this code is linked
- * into, then the folder of installation. */
+/* Finds the folders: $AFTERGLOW_MODULE_DIR, then afterglow/ and ../lib/afterglow/ beside the library or program that
+ * this code is linked into, then the folder of installation. */
 void module_folders_find(module_folders *out_folders);
 
 #endif

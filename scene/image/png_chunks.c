@@ -38,7 +38,8 @@ static const char *find_wrong(FILE *file)
 
 const char *png_chunks_wrong(const unsigned char *bytes, size_t size)
 {
-    FILE *file = size > 0 ? fmemopen((void *)bytes, size, "rb") : NULL; /* which only reads */
+    FILE *file =
+        size > 0 ? fmemopen((void *)bytes, size, "rb") : NULL; /* opened to read only, so the bytes stay const */
     const char *wrong = file ? find_wrong(file) : NULL;
     if (file)
         fclose(file);

@@ -8,7 +8,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-/* NULL: bytes are no PNG file, or one whose chunks fit; else what is wrong. */
+/* Returns what is wrong with the chunks of a PNG file; NULL: nothing, or the bytes are no PNG file. */
 const char *png_chunks_wrong(const unsigned char *bytes, size_t size);
 /* Returns what is wrong with a file, as png_chunks_wrong does; NULL also where it cannot be read. */
 const char *png_file_chunks_wrong(const char *path);

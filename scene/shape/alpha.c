@@ -19,11 +19,11 @@ float alpha_at_hit(const scene *s, const surface_hit *hit)
     const shape *at = &s->shapes[hit->shape_index];
     if (shape_is_opaque(at))
         return 1.0f;
-    surface_hit in_object = instance_hit_in_object(s, hit); /* where rays were asked */
+    surface_hit in_object = instance_hit_in_object(s, hit); /* the space in which alpha_stops_ray decided */
     return alpha_at(s, at, &in_object);
 }
 
-/* Uniform in [0, 1), another number for every ray and surface. */
+/* Returns a number that is uniform in [0, 1), another one for every ray and surface. */
 static float number_of_ray(uint32_t shape_index, uint32_t primitive_index, uint32_t crossing, vec3 origin,
                            vec3 direction)
 {
@@ -39,7 +39,7 @@ bool alpha_stops_ray(const scene *s, const shape *at, uint32_t primitive_index, 
     surface_hit hit = {.distance = t, .time = time};
     if (at->alpha_texture != SCENE_NO_TEXTURE)
         shape_surface_at(at, primitive_index, u, v, vec3_add_scaled(origin, direction, t), direction, time, &hit);
-    float alpha = alpha_at(s, at, &hit); /* which reads the hit for a texture only */
+    float alpha = alpha_at(s, at, &hit); /* reads the hit where alpha is a texture */
     if (alpha <= 0.0f || alpha >= 1.0f || alpha_rule == RAY_MEETS_ALPHA)
         return alpha > 0.0f;
     return number_of_ray((uint32_t)(at - s->shapes), primitive_index, crossing, origin, direction) < alpha;

@@ -5,12 +5,13 @@
 
 #include "shape/shape.h"
 
-/* Notes how the arrays begin and end. No effect on a shape that borrows none. */
+/* Notes how the borrowed arrays begin and end. No effect on a shape that borrows none. */
 void borrowed_arrays_note(shape *s);
-/* Returns whether all of them can be read; true where none is borrowed. */
+/* Returns whether all borrowed arrays can be read; true where none is borrowed. */
 bool borrowed_arrays_are_mapped(const shape *s);
-/* Returns whether they cannot be read any more, or begin or end with other bytes than were noted: allocators write
- * there when an array is freed. Other writes are not seen; shape_hash_borrowed, which reads all bytes, sees them. */
+/* Returns whether borrowed arrays cannot be read any more, or begin or end with other bytes than were noted, since
+ * allocators write there when an array is freed. Other writes are not seen; shape_hash_borrowed, which reads all bytes,
+ * sees them. */
 bool borrowed_arrays_are_lost(const shape *s);
 
 #endif

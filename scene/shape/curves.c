@@ -9,13 +9,14 @@
 
 enum { SETTLE_STEPS = 3, LENGTH_PARTS = 16 };
 
-/* How far off a tube's surface rays start, as a share of its radius: what Embree's own search for the surface loses. */
+/* Rays start off a tube's surface by this share of its radius, as Embree's search for the surface is no more
+ * precise. */
 static const float TUBE_EPSILON_RELATIVE = 0x1p-9f;
-/* A ray that leaves a flat curve is met by the same curve as it turns to that ray: around its middle line, so half the
- * width off its surface it is clear in every direction, and a little more for the rounding. */
+/* A flat curve turns to each ray about its middle line, so a ray that leaves it could meet it again. At half the width
+ * off the surface no ray can; the rest is for rounding. */
 static const float FLAT_EPSILON_RELATIVE = 1.02f;
-/* A ribbon's points are recomputed on the surface that Embree meets: there is little to be off by, and what photons
- * start off by they land off by. */
+/* Points on a ribbon are recomputed on the surface that Embree meets, so this covers rounding alone. Photons land off
+ * the surface by as much as they start off it. */
 static const float RIBBON_EPSILON_RELATIVE = 0x1p-12f;
 
 /* --- points of the axis --- */
@@ -28,8 +29,8 @@ typedef struct posed {
 
 static float mixed(float a, float b, float t) { return (1.0f - t) * a + t * b; }
 
-/* The control points before a time of the shutter, behind which the set after it follows; and how far the way from the
- * one to the other is behind. Only of points that move. */
+/* Returns the control points of the last set before a time of the shutter; the next set follows behind them.
+ * *out_share: how much of the way to that next set is done. Only for points that move. */
 static const curve_point *points_before(const curves *c, uint32_t segment, float time, float *out_share)
 {
     const float passed = fminf(fmaxf(time, 0.0f), 1.0f) * (float)c->motion_segments;
@@ -55,8 +56,8 @@ static posed pose_of(const curves *c, uint32_t segment, float time)
     return at;
 }
 
-/* The largest coordinate, by its size, that a segment reaches at a time; where it moves, of the sets before and after:
- * their means are rounded by as much. */
+/* Returns the largest absolute coordinate that a segment reaches at a time. Where it moves, the sets before and after
+ * count, since their mean is rounded by as much. */
 static float reach_of(const curves *c, const posed *segment, float time)
 {
     const curve_point *points = segment->points;
@@ -87,7 +88,7 @@ static void cross(const double a[3], const double b[3], double out[3])
     out[2] = a[0] * b[1] - a[1] * b[0];
 }
 
-/* Less its part along a unit vector. */
+/* Subtracts from v its part along a unit vector. */
 static void take_across(double v[3], const double unit[3])
 {
     double along = dot(v, unit);
@@ -95,7 +96,7 @@ static void take_across(double v[3], const double unit[3])
         v[i] -= along * unit[i];
 }
 
-/* False where there is nothing to speak of. */
+/* Makes v unit. Returns false where it is too short to have a direction. */
 static bool make_unit(double v[3])
 {
     double square = dot(v, v);
@@ -145,8 +146,8 @@ static axis_point find_axis_point(const posed *segment, double u)
     return at;
 }
 
-/* The point of the axis whose cross-section contains `point`; with a direction, the one that is nearest as seen along
- * it. u: near it. */
+/* Returns the point of the axis whose cross-section contains `point`; with a direction, the point of the axis that is
+ * nearest to it as seen along that. u: a parameter near it. */
 static axis_point settle(const posed *segment, const double point[3], const double *direction, double *in_out_u)
 {
     double u = fmin(fmax(*in_out_u, 0.0), 1.0);
@@ -176,17 +177,17 @@ static axis_point settle(const posed *segment, const double point[3], const doub
 
 /* --- ribbons --- */
 
-/* From a ribbon's middle line to its edge on the side of normal x tangent, and its derivative by u. */
+/* The vector from a ribbon's middle line to its edge on the side of normal x tangent, and its derivative by u. */
 typedef struct ribbon_side {
     double d[3], slope[3];
 } ribbon_side;
 
-/* The side's control points, as of the curve's cubic. */
+/* The control points of the cubic that this vector follows along the segment. */
 typedef struct ribbon_edge {
     double b[4][3];
 } ribbon_edge;
 
-/* Of the normals' cubic; n: not unit. */
+/* Evaluates the cubic of the normals and its derivative; n is not unit. */
 static void find_ribbon_normal(const curves *c, uint32_t segment, double u, double n[3], double dn[3])
 {
     const vec3 *q = c->normals + 4 * (size_t)segment;
@@ -201,8 +202,8 @@ static void find_ribbon_normal(const curves *c, uint32_t segment, double u, doub
     }
 }
 
-/* The unit vector across the curve and its normal, and its derivative by u. follows_bend: with the part of it that is
- * due to the curve's own turning, which Embree leaves out. */
+/* Returns the unit vector across the curve and its normal, and its derivative by u. follows_bend: with the part of it
+ * that is due to the curve's own turning, which Embree leaves out. */
 static ribbon_side ribbon_across(const curves *c, uint32_t segment, double u, const axis_point *at, bool follows_bend)
 {
     double n[3], dn[3], turn[3], bend[3];
@@ -287,8 +288,8 @@ double curves_fit_ribbon(curves *c, uint32_t segment)
     return widest > 0.0 ? largest / widest : 0.0;
 }
 
-/* The point of a ribbon nearest to one that is all but on it: along it by u, which comes in near it, and across by
- * *out_v in [-1, 1]. Sets the derivatives by both, along and across. */
+/* Returns the point of a ribbon that is nearest to a point almost on it: along it by u, which comes in near it, and
+ * across by *out_v in [-1, 1]. Sets the derivatives by both. */
 static axis_point settle_on_ribbon(const curves *c, const posed *segment, const double point[3], double *in_out_u,
                                    double *out_v, double out_normal[3])
 {
@@ -357,7 +358,7 @@ void curves_surface_at(const shape *s, uint32_t primitive_index, float u, vec3 p
     for (int i = 0; i < 3; i++)
         off[i] = x[i] - at.p[i];
 
-    /* towards the ray's origin, across the curve; and to v's side as it is seen from there */
+    /* across the curve and towards the ray's origin; then to the side on which v grows as seen from there */
     double facing[3] = {-way[0], -way[1], -way[2]};
     take_across(facing, at.t);
     if (!make_unit(facing))

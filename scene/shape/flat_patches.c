@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Each triangle at an edge is held against so many before it: more than two at one edge are rare. */
+/* At an edge a triangle is compared with at most so many earlier ones: more than two at one edge are rare. */
 enum { EDGE_NEIGHBORS_MAX = 8 };
 /* Normals of a file's vertices are off by this where they were rounded to bytes, radians: sqrt(3) / 2 / 127. */
 static const float VERTEX_ANGLE_MAX = 7e-3f;
@@ -73,14 +73,14 @@ static void difference(vec3 a, vec3 b, double out[3])
     out[0] = (double)a.x - (double)b.x, out[1] = (double)a.y - (double)b.y, out[2] = (double)a.z - (double)b.z;
 }
 
-/* Whether two unit normals are parallel, of one sense or the opposite ones. */
+/* Returns whether two unit normals are parallel, whether they point the same way or opposite ways. */
 static bool is_parallel(vec3 a, vec3 b, float angle_max)
 {
     vec3 apart = vec3_sub(a, vec3_face_forward(b, a));
     return vec3_length_squared(apart) <= angle_max * angle_max;
 }
 
-/* The normal and area of a triangle; zero where its vertices have other normals. */
+/* Computes the normal and area of a triangle; both are zero where its vertices have other normals. */
 static void measure(work *w, uint32_t triangle)
 {
     const mesh *m = w->m;

@@ -6,7 +6,7 @@
 #include "scene.h"
 #include "shape/mesh_motion.h"
 
-/* The error of the traversal's way into the object's space and back, as a part of all that is added up there. */
+/* The error of the traversal's transform into the object's space and back, relative to all that is summed there. */
 #define FLAT_EPSILON_RELATIVE  0x1p-19f
 #define ROUND_EPSILON_RELATIVE 0x1p-19f
 
@@ -52,9 +52,8 @@ static vec3 normal_to_world(const double cofactors[3][3], double sign, vec3 n)
     return (vec3){(float)(w[0] * inverse), (float)(w[1] * inverse), (float)(w[2] * inverse)};
 }
 
-/* A ray that starts at the hit is rounded in the world's coordinates, and again on its way into the object's space,
- * where the sums are as large as the translation; and what is lost there shows in the world as large as the map makes
- * it. */
+/* Two roundings add up: that of a ray's origin in the world's coordinates, and that of its transform into the object's
+ * space, where the sums are as large as the translation. The map scales the second on the way back. */
 static float epsilon_in_world(const affine *a, const double cofactors[3][3], double determinant, vec3 world,
                               float object_epsilon, float relative)
 {
@@ -79,7 +78,7 @@ void instance_transform_hit(const affine *world_from_object, surface_hit *in_out
     double cofactors[3][3], determinant = affine_determinant(world_from_object);
     affine_cofactors(world_from_object, cofactors);
     const double(*c)[3] = (const double(*)[3])cofactors;
-    double sign = determinant < 0.0 ? -1.0 : 1.0; /* the outside stays the outside in a mirror */
+    double sign = determinant < 0.0 ? -1.0 : 1.0; /* a map that mirrors keeps outside and inside */
     h->is_mirrored = h->is_mirrored != (determinant < 0.0);
     h->position = affine_point(world_from_object, h->position);
     h->shading_normal = normal_to_world(c, sign, h->shading_normal);
@@ -88,7 +87,7 @@ void instance_transform_hit(const affine *world_from_object, surface_hit *in_out
                                   h->is_flat ? FLAT_EPSILON_RELATIVE : ROUND_EPSILON_RELATIVE);
 }
 
-/* A normal goes back by the transpose. */
+/* A normal is transformed back by the transpose of the matrix. */
 static vec3 normal_in_object(const affine *a, vec3 n)
 {
     double o[3], square = 0.0;

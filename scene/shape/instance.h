@@ -44,7 +44,7 @@ void instance_transform_hit(const affine *world_from_object, struct surface_hit 
  * that read shapes. */
 struct surface_hit instance_hit_in_object(const struct scene *s, const struct surface_hit *hit);
 
-/* Where a point of a surface lies, in world space, when the shutter opens. */
+/* The place of a point of a surface, in world space, when the shutter opens. */
 typedef struct surface_rest {
     vec3 position;
     vec3 geometric_normal; /* unit, outside; where area_ratio is 0 the normal of the hit that it was found for */

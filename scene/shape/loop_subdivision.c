@@ -104,10 +104,10 @@ static ag_status find_twins(level *l, const uint32_t *names, char *error, size_t
     return status;
 }
 
-/* The next outgoing half-edge counterclockwise; NONE at the boundary. */
+/* Returns the next outgoing half-edge counterclockwise; NONE at the boundary. */
 static uint32_t turn_left(const level *l, uint32_t outgoing) { return l->twins[previous_of(outgoing)]; }
 
-/* Finds every vertex's first half-edge, and that the triangles around it are one fan. */
+/* Finds every vertex's first half-edge, and checks that the triangles around it are one fan. */
 static ag_status find_fans(level *l, const uint32_t *names, char *error, size_t error_size)
 {
     size_t count = 3 * l->triangle_count;
@@ -138,7 +138,7 @@ static ag_status find_fans(level *l, const uint32_t *names, char *error, size_t 
     return status;
 }
 
-/* The mesh as given, less the vertices that no triangle uses. */
+/* Makes the mesh as given, without the vertices that no triangle uses. */
 static ag_status make_control_level(const double *positions, size_t vertex_count, const uint32_t *indices,
                                     size_t triangle_count, char *error, size_t error_size, level *out_level)
 {
@@ -234,7 +234,7 @@ static ring summarise_ring(const level *l, size_t v)
 /* Warren's weight of each neighbour of an interior vertex. */
 static double inner_weight(int valence) { return valence == 3 ? 3.0 / 16.0 : 3.0 / (8.0 * valence); }
 
-/* A vertex moved toward its ring: one step of subdivision, or all of them. */
+/* Moves a vertex toward its ring: by one step of subdivision, or by all of them to the limit. */
 static void smooth_vertex(const level *l, size_t v, bool to_limit, double out_position[3])
 {
     ring r = summarise_ring(l, v);
@@ -255,8 +255,8 @@ static void smooth_vertex(const level *l, size_t v, bool to_limit, double out_po
     memcpy(out_position, p, sizeof p);
 }
 
-/* The limit surface's normal, by the tangents along and across (Hoppe et al. 1994; on the boundary as in Pharr et
- * al.). */
+/* Computes the limit surface's normal from the tangents along and across (Hoppe et al. 1994; on the boundary as in
+ * Pharr et al.). */
 static void limit_normal(const level *l, size_t v, double out_normal[3])
 {
     double s[3] = {0.0, 0.0, 0.0}, t[3] = {0.0, 0.0, 0.0};

@@ -2,7 +2,7 @@
  * recomputed here lies where rays meet it, within the rounding that epsilon allows for. */
 #include "shape/mesh_motion.h"
 
-/* The two sets of a time, and how far the way from the one to the other is behind. */
+/* The two sets of vertices around a time, and how much of the way from the first to the second is done. */
 typedef struct moment {
     size_t before, after; /* the index of each set's first value */
     float share;
@@ -48,7 +48,8 @@ float mesh_moving_reach(const mesh *m, uint32_t triangle, float time)
     return reach;
 }
 
-/* In double precision: floats lose the area of a triangle that is a few thousand times as long as it is wide. */
+/* Subtracts in double precision: in float a triangle that is a few thousand times as long as it is wide loses
+ * its area. */
 static void subtract(vec3 a, vec3 b, double out[3])
 {
     out[0] = (double)a.x - b.x, out[1] = (double)a.y - b.y, out[2] = (double)a.z - b.z;
@@ -62,7 +63,7 @@ static void cross(const double a[3], const double b[3], double out[3])
 
 static double dot(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
-/* Twice the area, along the triangle's normal. */
+/* Computes twice the area as a vector along the triangle's normal. */
 static void find_area(const corner_values *c, double out_area[3])
 {
     double e1[3], e2[3];

@@ -7,7 +7,7 @@
 
 #include "shape/shape.h"
 
-/* At most so many sets: as many as Embree takes. */
+/* The most sets of vertices: as many as Embree takes. */
 enum { MESH_STEPS_MAX = 129 };
 
 /* Returns how many positions, and normals, a mesh has in all its sets. */
@@ -56,8 +56,8 @@ static inline vec3 triangle_edge(const corner_values *c, int corner) { return ve
  * has no area. */
 void find_barycentrics(const corner_values *positions, vec3 point, double *out_b1, double *out_b2);
 
-/* Moves a point of a triangle, as it is at a time of the shutter, to where it is at the opening; and an area vector
- * there, of either side, with it: zero where the triangle has no area at the opening. */
+/* Moves a point of a triangle, as it is at a time of the shutter, to where it is at the opening. Computes an area
+ * vector there, of either side, which is zero where the triangle has no area at the opening. */
 void mesh_move_to_opening(const mesh *m, uint32_t triangle, float time, vec3 *in_out_point, double in_out_area[3]);
 
 /* Returns the largest coordinate, by its size, of the corners before and after that time: their means are rounded by as

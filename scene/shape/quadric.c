@@ -19,8 +19,8 @@ static bool is_whole_sphere(const shape *s)
 
 /* --- area --- */
 
-/* How much world area there is per object area where the object's unit normal is that: |cofactor(M) n| =
- * |det M| |M^-T n|. */
+/* Returns the world's area per area in object space where the object's unit normal is (x, y, z): |cofactor(M) n| = |det
+ * M| |M^-T n|. */
 static double area_factor(const quadric *q, double x, double y, double z)
 {
     const double(*m)[4] = q->world_from_object.m;
@@ -68,7 +68,8 @@ float quadric_area(const shape *s)
 
 /* --- bounds --- */
 
-/* How far the surface reaches along a direction of object space: the largest product of one of its points with it. */
+/* Returns how far the surface reaches along a direction of object space: the largest dot product of a point of it with
+ * the direction. */
 static double reach_along(const shape *s, double x, double y, double z)
 {
     const quadric *q = &s->as.quadric;
@@ -108,8 +109,8 @@ void quadric_find_bounds(const shape *s, vec3 *out_min, vec3 *out_max)
     *out_max = (vec3){high[0], high[1], high[2]};
 }
 
-/* Hits are put back onto the surface, so a start needs to stay clear of a few roundings only; more would change the way
- * of light that goes round inside glass. */
+/* Hits are put back onto the surface, so this covers a few roundings only. More would change the path of light that
+ * goes round inside glass. */
 #define QUADRIC_EPSILON_RELATIVE 0x1p-19f
 
 void quadric_commit(shape *s)
@@ -130,7 +131,7 @@ void quadric_commit(shape *s)
 
 /* --- samples --- */
 
-/* The outside normal at an object-space normal. */
+/* Returns the outside normal in the world for one in object space. */
 static vec3 world_normal(const shape *s, vec3 object_normal)
 {
     vec3 n = vec3_normalize(transform_normal(&s->as.quadric.world_from_object, object_normal));
@@ -204,7 +205,7 @@ static vec2 surface_uv(const shape *s, double x, double y, double z)
     return (vec2){(float)(turns / turn), (float)fmin(fmax(v, 0.0), 1.0)};
 }
 
-/* Far from the origin all of a small sphere is one float: there the middle is hit, and any direction will do. */
+/* Far from the origin a small sphere may be a single float: rays then hit its centre, where any direction will do. */
 static vec3 normalize_or_z(vec3 v)
 {
     float square = vec3_length_squared(v);
@@ -290,7 +291,7 @@ static int meet_round(const double o[3], const double d[3], int axes, double r2,
     return 2;
 }
 
-/* Whether a point on the whole surface belongs to the part there is. */
+/* Returns whether a point on the whole surface belongs to the part that exists. */
 static bool is_in_part(const shape *s, double x, double y, double z)
 {
     const quadric *q = &s->as.quadric;

@@ -45,7 +45,7 @@ void shape_reset(shape *s)
         mesh_reset(&s->as.mesh);
 }
 
-/* A copy of count items and room for spare more, zeroed; NULL stays NULL. */
+/* Copies count items and adds room for spare more, zeroed; NULL stays NULL. */
 static bool copy_array(const void *items, size_t count, size_t spare, size_t item_bytes, void *out_items)
 {
     void *copy = NULL;
@@ -102,7 +102,7 @@ static vec3 mesh_vertex(const mesh *m, uint32_t triangle, int corner)
     return m->positions[m->indices[3 * (size_t)triangle + (size_t)corner]];
 }
 
-/* Twice the triangle's area as a vector, in double so that slivers keep a direction. */
+/* Returns twice the triangle's area as a vector, in double so that slivers keep a direction. */
 static inline vec3 area_vector(vec3 a, vec3 b, vec3 c, double *out_length)
 {
     double e1[3] = {(double)b.x - a.x, (double)b.y - a.y, (double)b.z - a.z};
@@ -120,7 +120,7 @@ static vec3 mesh_area_vector(const mesh *m, uint32_t triangle, double *out_lengt
                        out_length);
 }
 
-/* fmaxf without the call that the compiler makes of it. */
+/* Returns the larger of a and |b|, without the call that the compiler makes of fmaxf. */
 static inline float larger_size(float a, float b) { return fabsf(b) > a ? fabsf(b) : a; }
 static inline float largest_size(vec3 a) { return larger_size(larger_size(fabsf(a.x), a.y), a.z); }
 
@@ -216,7 +216,7 @@ static surface_sample mesh_sample_area(const shape *s, vec2 u)
     return shape_sample_triangle(s, triangle, sample_triangle(u));
 }
 
-/* Back from a place within a triangle to the numbers that pick both; at: what sample_triangle is given. */
+/* Returns the numbers that pick a triangle and a place within it; at: what sample_triangle is given. */
 static vec2 numbers_of_triangle(const mesh *m, uint32_t triangle, vec2 at)
 {
     float before = triangle > 0 ? m->area_cdf[triangle - 1] : 0.0f;
@@ -273,8 +273,8 @@ static corners mesh_corners(const mesh *m, uint32_t triangle)
     return (corners){mesh_vertex(m, triangle, 0), mesh_vertex(m, triangle, 1), mesh_vertex(m, triangle, 2)};
 }
 
-/* The geometric normal, and the shading normal (the same where the mesh has none). normals: among them those of the
- * corners, at index; NULL: the mesh has none. */
+/* Returns the geometric normal, and computes the shading normal (the same where the mesh has none). normals: an array
+ * that has those of the corners, at index; NULL: the mesh has none. */
 static inline vec3 mesh_normals(const shape *s, const corners *c, const vec3 *normals, const uint32_t index[3], float u,
                                 float v, vec3 *out_shading)
 {

@@ -21,7 +21,7 @@
 
 typedef enum shape_kind { SHAPE_MESH, SHAPE_SPHERE, SHAPE_CYLINDER, SHAPE_DISK, SHAPE_CURVES } shape_kind;
 
-/* Arrays that belong to whoever asked for the scene. */
+/* Flags for arrays that belong to the caller who made the scene. */
 enum { MESH_BORROWS_POSITIONS = 1, MESH_BORROWS_UVS = 2, MESH_BORROWS_INDICES = 4 };
 
 /* World space. Arrays are owned by the shape, which is owned by the scene, unless they are borrowed or shared; nobody
@@ -43,8 +43,9 @@ typedef struct mesh {
     uint64_t borrowed_ends; /* see borrowed_arrays.h */
 } mesh;
 
-/* Sphere and cylinder around the z axis, of which z_min to z_max is there; disk: z = height, inner to outer radius. All
- * from the x axis so far round the z axis as `turn` says. Under any affine map. */
+/* A sphere or cylinder around the z axis, of which the part from z_min to z_max exists; or a disk at z = height, from
+ * inner to outer radius. Of each, only the part from the x axis as far round the z axis as `turn` says exists. Any
+ * affine map may place it. */
 typedef struct quadric {
     transform world_from_object;
     float radius;
@@ -108,14 +109,15 @@ typedef struct shape {
     float area; /* m^2, world; set by scene_commit, unless it is known, above 0 */
 } shape;
 
-/* A shape with nothing in it yet: opaque, dark, of the scene's first material, in no medium. */
+/* Returns a shape with nothing in it yet: opaque, dark, of the scene's first material, in no medium. */
 shape shape_make(shape_kind kind);
 /* Frees what it owns. */
 void shape_reset(shape *s);
 void mesh_reset(mesh *m);
-/* A shape that shares the other's arrays, both uncommitted or not: each is reset by itself. Errors: AG_ERROR_MEMORY. */
+/* Makes a shape that shares another's arrays, whether committed or not: each is reset by itself. Errors:
+ * AG_ERROR_MEMORY. */
 ag_status shape_share(shape *s, shape *out_other);
-/* Whether rays would meet the same: surfaces that share their arrays, or are equal by their few numbers. */
+/* Returns whether rays would meet the same: surfaces that share their arrays, or are equal by their few numbers. */
 bool shape_has_same_surface(const shape *a, const shape *b);
 /* Returns whether two meshes, or two curves, hold equal arrays and do not share them yet. */
 bool shape_equals(const shape *s, const shape *other);
@@ -123,8 +125,8 @@ bool shape_equals(const shape *s, const shape *other);
 ag_status shape_share_arrays(shape *from, shape *in_out_shape);
 /* Returns a hash of the arrays that a mesh borrows, to detect writes; 0: it borrows none, or they cannot be read. */
 uint64_t shape_hash_borrowed(const shape *s);
-/* Copies a shape that is no curves, before its commit, moved on by a map: its world space becomes another's. NULL: it
- * stays where it is, to the last bit. Errors: AG_ERROR_MEMORY. */
+/* Copies a shape, not one of curves, before its commit, transformed by a map from its world space to another's. NULL:
+ * it stays where it is, to the last bit. Errors: AG_ERROR_MEMORY. */
 ag_status shape_copy(const shape *s, const transform *map, shape *out_copy);
 
 surface_sample shape_sample_area(const shape *s, vec2 u);
@@ -153,7 +155,7 @@ float shape_pdf_area(const shape *s, vec3 geometric_normal);
  * put onto the surface. direction: the ray's, of any length; read for curves alone. time: of the shutter, [0, 1]. */
 void shape_surface_at(const shape *s, uint32_t primitive_index, float u, float v, vec3 position, vec3 direction,
                       float time, surface_hit *out_hit);
-/* shape_surface_at, but uv may be missing. */
+/* Works as shape_surface_at, but may leave uv out. */
 void shape_hit_at(const shape *s, uint32_t primitive_index, float u, float v, vec3 position, vec3 direction, float time,
                   surface_hit *out_hit);
 /* Computes the position, geometric normal and epsilon alone, as shape_hit_at does, but for the normal's side. Returns

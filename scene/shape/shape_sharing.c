@@ -10,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* NULL: a shape of that kind has no arrays. */
+/* Returns where the count of a shape's holders is kept; NULL: a shape of that kind has no arrays. */
 static uint32_t **holder_count_of(shape *s)
 {
     return s->kind == SHAPE_MESH     ? &s->as.mesh.holder_count
@@ -103,7 +103,7 @@ ag_status shape_share_arrays(shape *from, shape *in_out_shape)
     return AG_OK;
 }
 
-/* Of words of 4 bytes. */
+/* Extends a hash by count words of 4 bytes. */
 static uint64_t hash_words(uint64_t hash, const void *array, size_t count)
 {
     const unsigned char *bytes = array;

@@ -11,7 +11,7 @@ static const surface_differentials NO_DIFFERENTIALS;
 
 static vec3 across(vec3 v, vec3 normal) { return vec3_add_scaled(v, normal, -vec3_dot(v, normal)); }
 
-/* From derivatives along two edges to those along u and v, in double: an atlas makes its uvs small. */
+/* Combines derivatives along two edges into one along u or v, in double, since an atlas makes its uvs small. */
 static vec3 combine(vec3 e1, double a, vec3 e2, double b)
 {
     return (vec3){(float)(e1.x * a + e2.x * b), (float)(e1.y * a + e2.y * b), (float)(e1.z * a + e2.z * b)};
@@ -35,7 +35,7 @@ static uv_edges triangle_uv_edges(const mesh *m, const uint32_t *index)
     return e;
 }
 
-/* dpdu and dpdv; all zero where uvs say nothing. positions: of the triangle's corners. */
+/* Returns dpdu and dpdv; all are zero where uvs say nothing. positions: of the triangle's corners. */
 static surface_differentials triangle_axes(const mesh *m, uint32_t triangle, const corner_values *positions)
 {
     const uint32_t *index = m->indices + 3 * (size_t)triangle;
@@ -71,7 +71,7 @@ static surface_differentials mesh_differentials(const shape *s, const surface_hi
     return d;
 }
 
-/* How the world's unit normal turns where the object's turns by dn. */
+/* Returns how the world's unit normal turns where the object's turns by dn. */
 static vec3 turn_of_normal(const shape *s, vec3 object_normal, vec3 dn, vec3 world_normal)
 {
     const transform *t = &s->as.quadric.world_from_object;
@@ -115,8 +115,8 @@ static surface_differentials quadric_differentials(const shape *s, const surface
                                    turn_of_normal(s, normal, dndv, hit->shading_normal)};
 }
 
-/* How the world's unit normal turns where the object's, of unit length, turns by dn: both go by the inverse
- * transpose. */
+/* Returns how the world's unit normal turns where the object's, of unit length, turns by dn: both are transformed by
+ * the inverse transpose. */
 static vec3 turn_to_world(const affine *a, vec3 object_normal, vec3 dn, vec3 world_normal)
 {
     double c[3][3], turned[3], square = 0.0;
@@ -196,7 +196,7 @@ bool surface_has_own_tangents(const scene *s, const surface_hit *hit)
     return has_tangents(&s->shapes[hit->shape_index]);
 }
 
-/* The tangents that a mesh has been given, in its own space; false where there are none. */
+/* Finds the tangent that a mesh has been given, in its own space; returns false where there is none. */
 static bool mesh_tangent(const shape *s, const surface_hit *hit, vec3 *out_tangent)
 {
     const mesh *m = &s->as.mesh;
