@@ -44,7 +44,8 @@ void arena_destroy(arena *a)
     free(a);
 }
 
-/* Takes the first spare block with room for size_bytes (a multiple of the alignment) out of the chain, or makes one. */
+/* Returns the first spare block with room for size_bytes (a multiple of the alignment), which it takes out of the
+ * chain, or makes one. */
 static arena_block *take_block(arena *a, size_t size_bytes)
 {
     arena_block **link = a->current ? &a->current->next : &a->first;
@@ -54,7 +55,8 @@ static arena_block *take_block(arena *a, size_t size_bytes)
             *link = found->next;
             return found;
         }
-    /* A power of two, so that ever larger requests leave at most as much behind as the largest of them took. */
+    /* The block's size is a power of two, so that ever larger requests leave behind at most as much as the largest of
+     * them took. */
     size_t capacity = ARENA_ALIGNMENT;
     while (capacity < size_bytes || capacity < a->block_bytes) {
         if (capacity > SIZE_MAX / 4)

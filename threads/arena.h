@@ -15,13 +15,14 @@ typedef struct arena_mark {
 arena *arena_create(size_t block_bytes);
 void arena_destroy(arena *a); /* NULL is fine */
 
-/* Aligned to 64 bytes, contents undefined. Returns NULL when out of memory. size 0 gives a valid pointer. */
+/* Allocates memory aligned to 64 bytes, its contents undefined. Returns NULL when out of memory. size 0 gives a valid
+ * pointer. */
 void *arena_alloc(arena *a, size_t size_bytes);
 
 arena_mark arena_save(const arena *a);
 void arena_restore(arena *a, arena_mark mark); /* gives back what was allocated since */
 
-/* The most bytes that were in use at once, each allocation rounded up to 64. */
+/* Returns the most bytes that were in use at once, each allocation rounded up to 64. */
 size_t arena_peak_bytes(const arena *a);
 
 #endif

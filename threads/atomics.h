@@ -50,7 +50,7 @@ static inline bool cas_release_u32(atomic_u32 *a, uint32_t *expected, uint32_t d
     return atomic_compare_exchange_strong_explicit(a, expected, desired, memory_order_release, memory_order_relaxed);
 }
 
-/* Strong, and orders nothing else. */
+/* Strong compare-and-swap that orders no other access. */
 static inline bool cas_relaxed_u64(atomic_u64 *a, uint64_t *expected, uint64_t desired)
 {
     return atomic_compare_exchange_strong_explicit(a, expected, desired, memory_order_relaxed, memory_order_relaxed);
@@ -72,8 +72,8 @@ static inline uint64_t fetch_add_relaxed_u64(atomic_u64 *a, uint64_t v)
     return atomic_fetch_add_explicit(a, v, memory_order_relaxed);
 }
 
-/* Tells TSan of an order that a library keeps, when it calls back from a thread of its own, by locks that TSan does not
- * see (libraries are not instrumented). Otherwise nothing. */
+/* Tells TSan of an order that a library keeps by locks which TSan does not see, since libraries are not instrumented,
+ * when it calls back from a thread of its own. Without TSan it does nothing. */
 static inline void order_before_library(void *a)
 {
 #ifdef AFTERGLOW_TSAN

@@ -12,7 +12,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A part of a text that is not ours. */
+/* A part of a text that somebody else owns. */
 typedef struct span {
     const char *begin, *end;
 } span;
@@ -25,7 +25,7 @@ static bool span_equals(span s, const char *text)
     return span_length(s) == strlen(text) && memcmp(s.begin, text, span_length(s)) == 0;
 }
 
-/* Takes what stands before the next separator, or all, off the front of rest. */
+/* Returns what stands before the next separator, or all, and removes it from the front of rest. */
 static span take_until(span *rest, char separator)
 {
     const char *found = rest->begin < rest->end ? memchr(rest->begin, separator, span_length(*rest)) : NULL;
@@ -94,9 +94,9 @@ static double quota_of_directory(const char *directory, bool is_v2)
     return quota_us > 0 && period_us > 0 ? (double)quota_us / (double)period_us : 0.0;
 }
 
-/* The tightest quota of the cgroup at mount_point + below and of all that contain it, as far as the mount shows: each
- * limits all below it. Directories that are not there are passed over, so a path that means nothing inside a
- * container ends at the mount itself, which is the container's own group. */
+/* Returns the tightest quota of the cgroup at mount_point + below and of all that contain it, as far as the mount
+ * shows, since each limits all below it. Directories that are not there are passed over, so a path that means nothing
+ * inside a container ends at the mount itself, which is the container's own group. */
 static double quota_of_hierarchy(const char *root, const char *mount_point, const char *below, bool is_v2)
 {
     char *directory = NULL;
@@ -115,8 +115,8 @@ static double quota_of_hierarchy(const char *root, const char *mount_point, cons
     return quota;
 }
 
-/* The part of the cgroup's path below the part of the hierarchy that is mounted ("" or "/..."); NULL if the mount
- * shows another part, or if the path leaves a cgroup namespace by "..". */
+/* Returns the part of the cgroup's path below the part of the hierarchy that is mounted ("" or "/..."); NULL if the
+ * mount shows another part, or if the path leaves a cgroup namespace by "..". */
 static const char *path_below_mount(const char *cgroup_path, const char *mounted_part)
 {
     size_t length = strcmp(mounted_part, "/") == 0 ? 0 : strlen(mounted_part);
@@ -128,7 +128,7 @@ static const char *path_below_mount(const char *cgroup_path, const char *mounted
     return strcmp(below, "/") == 0 ? "" : below;
 }
 
-/* The quota of one cgroup, by its path in the v2 hierarchy or in v1's with the cpu controller. */
+/* Returns the quota of one cgroup, by its path in the v2 hierarchy or in v1's with the cpu controller. */
 static double quota_of_cgroup(const char *root, const char *cgroup_path, bool is_v2, const char *mountinfo)
 {
     double quota = 0.0, quota_elsewhere = 0.0;
@@ -180,7 +180,7 @@ double cpu_quota_below(const char *root, const char *proc_self_cgroup, const cha
     return quota;
 }
 
-/* CPUs the kernel lets the calling thread run on; 0 if it does not say. */
+/* Returns the number of CPUs that the kernel lets the calling thread run on; 0 if it does not say. */
 static unsigned affinity_cpu_count(void)
 {
     /* The kernel refuses (EINVAL) a mask shorter than its own, whose length it does not tell. */
@@ -200,7 +200,7 @@ static unsigned affinity_cpu_count(void)
     return 0;
 }
 
-/* The whole of a file whose size nobody knows, as in /proc. NULL if it cannot be read; the caller frees it. */
+/* Reads the whole of a file whose size is not known, as in /proc. NULL if it cannot be read; the caller frees it. */
 static char *read_whole(const char *path)
 {
     FILE *file = fopen(path, "re");

@@ -4,7 +4,7 @@
 #ifndef AFTERGLOW_CPU_COUNT_H
 #define AFTERGLOW_CPU_COUNT_H
 
-/* CPUs in the affinity mask, capped by the cgroup's CPU quota rounded up; at least 1. */
+/* Returns the number of CPUs in the affinity mask, at most the cgroup's CPU quota rounded up; at least 1. */
 unsigned cpu_count_available(void);
 
 /* The cgroup's CPU quota read below another root ("" is the machine's own): `proc_self_cgroup` and `mountinfo` are

@@ -5,7 +5,7 @@
 
 #include <stdbool.h>
 
-/* Whether an open file or folder lies on a network's file system, or on one of which that is not known. */
+/* Returns whether an open file or folder lies on a network's file system, or on one of which that is not known. */
 bool file_system_is_network(int descriptor);
 
 #endif

@@ -55,8 +55,8 @@ static bool is_silent(const log_sink *log) { return !log || !log->fn; }
 
 static bool is_upper_control(unsigned char c) { return c >= 0x80 && c < 0xa0; }
 
-/* Names in a stranger's file may hold what a terminal obeys: control characters of ASCII and of Latin-1, these as bytes
- * of their own or as Unicode's, which UTF-8 begins with 0xc2. Line ends stay, since messages have several lines. */
+/* Names in a stranger's file may hold control characters that a terminal obeys: those of ASCII and of Latin-1, the
+ * latter as single bytes or as UTF-8, which begins with 0xc2. Line ends stay, since messages have several lines. */
 static void replace_controls(char *message)
 {
     int size;
@@ -89,7 +89,7 @@ AG_PRINTF(3, 0) static void format_and_speak(log_sink *log, ag_log_level level, 
     va_copy(again, arguments);
     int needed = vsnprintf(small, sizeof small, format, arguments);
     if (needed < 0) {
-        /* a wide character that cannot be converted: what the message meant is still better than silence */
+        /* a wide character cannot be converted: the message without its arguments is still better than none */
         snprintf(small, sizeof small, "%s", format);
         speak(log, level, small, strlen(small));
     } else if ((size_t)needed < sizeof small) {
@@ -115,7 +115,8 @@ void log_message(log_sink *log, ag_log_level level, const char *format, ...)
     va_end(arguments);
 }
 
-/* Whether the key is new. Without memory to remember it, it counts as new: better twice than never. */
+/* Returns whether the key is new. Without memory to remember it, it counts as new, since a message twice is better than
+ * none. */
 static bool remember_key(log_sink *log, const char *key)
 {
     size_t low = 0, high = log->key_count;

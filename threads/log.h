@@ -9,12 +9,12 @@
 
 typedef struct log_sink log_sink;
 
-/* fn NULL: messages are dropped. Returns NULL when out of memory. */
+/* Makes a sink of messages; fn NULL: they are dropped. Returns NULL when out of memory. */
 log_sink *log_create(ag_log_fn *fn, void *user);
 void log_destroy(log_sink *log); /* NULL is fine */
 /* Drops messages from now on. Returns the callback that had them, for log_speak. Not while other threads may log. */
 ag_log_fn *log_silence(log_sink *log);
-/* From now on messages go to fn. Not while other threads may log. */
+/* Sends messages to fn from now on. Not while other threads may log. */
 void log_speak(log_sink *log, ag_log_fn *fn);
 
 /* log NULL is fine: the message is dropped. Line ends at the end are cut, and control characters but line ends become

@@ -73,7 +73,7 @@ void run_progress(run_context *run, ag_phase phase, double fraction)
     double now = clock_seconds();
     if (phase != run->progress_phase)
         tell(run, phase, 0.0, now);
-    /* Workers arrive out of order: what lies behind has been told already. */
+    /* Workers arrive out of order, and a fraction below the last one has been told already. */
     if (fraction > run->progress_fraction && (must_tell || now - run->progress_time >= PROGRESS_INTERVAL_SECONDS))
         tell(run, phase, fraction, now);
     pthread_mutex_unlock(&run->progress_mutex);

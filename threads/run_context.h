@@ -14,8 +14,8 @@
 /* A pause is heeded by the phase that allows it alone, and stays asked for until then. */
 typedef enum run_stop { RUN_CANCELLED = 1, RUN_PAUSE_WANTED = 2, RUN_PAUSE_ALLOWED = 4, RUN_IN_VAIN = 8 } run_stop;
 
-/* Whether what a phase works on is still what it was. thoroughly: also what takes some microseconds to find out. Called
- * by any worker, and thoroughly by one at a time. */
+/* Returns whether what a phase works on is still what it was. thoroughly: also checks what takes some microseconds to
+ * find out. Called by any worker, and thoroughly by one at a time. */
 typedef bool run_watch_fn(const void *watched, bool thoroughly);
 
 typedef struct run_context {
@@ -44,7 +44,7 @@ static inline void run_cancel(run_context *run) { fetch_or_relaxed_u32(&run->sto
 static inline void run_clear_cancel(run_context *run) { fetch_and_relaxed_u32(&run->stop, ~(uint32_t)RUN_CANCELLED); }
 /* Stops a phase, as run_cancel does, that works on what is no longer there. */
 static inline void run_break_off(run_context *run) { fetch_or_relaxed_u32(&run->stop, RUN_IN_VAIN); }
-/* Takes that back. Returns whether the phase was broken off. */
+/* Ends the state that run_break_off has set. Returns whether the phase was broken off. */
 static inline bool run_end_break(run_context *run)
 {
     return fetch_and_relaxed_u32(&run->stop, ~(uint32_t)RUN_IN_VAIN) & RUN_IN_VAIN;
@@ -56,9 +56,10 @@ static inline void run_end_watch(run_context *run) { run->watch = NULL; }
 /* Looks at what is watched, thoroughly twice a second. Workers call it between pieces of their work. */
 void run_look(run_context *run);
 static inline void run_pause(run_context *run) { fetch_or_relaxed_u32(&run->stop, RUN_PAUSE_WANTED); }
-/* From this call on run_is_cancelled is true where a pause is wanted, so that all that stops for good also pauses. */
+/* Allows pauses: from this call on run_is_cancelled is true where a pause is wanted, so that all that stops for good
+ * also pauses. */
 static inline void run_allow_pause(run_context *run) { fetch_or_relaxed_u32(&run->stop, RUN_PAUSE_ALLOWED); }
-/* Ends that again. Returns whether there was a pause, which is over then. */
+/* Forbids pauses again. Returns whether there was one, which is over then. */
 static inline bool run_end_pause(run_context *run)
 {
     uint32_t now = fetch_and_relaxed_u32(&run->stop, ~(uint32_t)RUN_PAUSE_ALLOWED);
@@ -70,7 +71,7 @@ static inline bool run_end_pause(run_context *run)
 static inline bool run_is_cancelled(const run_context *run)
 {
     uint32_t now = load_relaxed_u32(&run->stop);
-    /* without a pause wanted, one comparison: "allowed" alone stops nothing */
+    /* costs one comparison where no pause is wanted: "allowed" alone stops nothing */
     return (now & ~(uint32_t)RUN_PAUSE_ALLOWED) != 0 && now != RUN_PAUSE_WANTED;
 }
 

@@ -70,7 +70,7 @@ static cell moved(cell from, cell direction, int steps)
 
 static cell reversed(cell direction) { return (cell){-direction.x, -direction.y}; }
 
-/* An even half where there is a choice: only then do the parts join without a diagonal step. */
+/* Takes an even half where there is a choice: only then do the parts join without a diagonal step. */
 static int even_half(int length)
 {
     int half = length / 2;

@@ -25,7 +25,7 @@ ag_status tile_scheduler_create(int x0, int y0, int x1, int y1, int tile_size, u
                                 tile_scheduler **out_scheduler);
 void tile_scheduler_destroy(tile_scheduler *scheduler); /* NULL is fine */
 
-/* Claims the next tile; false when all are claimed. */
+/* Claims the next tile; returns false when all are claimed. */
 bool tile_scheduler_next(tile_scheduler *scheduler, tile *out_tile);
 
 uint32_t tile_scheduler_count(const tile_scheduler *scheduler);

@@ -31,7 +31,7 @@ enum { LOOK_UP_EVERY_MS = 20 }; /* while a reader is waited for */
 
 static atomic_u32 no_more_waits; /* stands alone, so relaxed */
 
-/* 0: a reader may be waited for; else the errno that says why not. run: NULL, or what may be cancelled. */
+/* Returns 0 where a reader may be waited for, else the errno that says why not. run: NULL, or what may be cancelled. */
 static int end_of_waits(const run_context *run)
 {
     if (load_relaxed_u32(&no_more_waits))
@@ -41,9 +41,9 @@ static int end_of_waits(const run_context *run)
 
 void atomic_file_end_waits(void) { store_relaxed_u32(&no_more_waits, 1); }
 
-/* A temporary file that a signal handler could remove. Whoever claims a slot fills it, then shows it. A handler takes
- * what is shown for as long as it reads it; the writer then waits with hiding it, so that neither name nor folder
- * becomes another's meanwhile. */
+/* A temporary file that a signal handler can remove. A writer claims a slot, fills it, and then shows it. A handler
+ * takes a shown slot for as long as it reads it, and the writer waits to hide it until then, so that meanwhile neither
+ * the name nor the folder can become another file's. */
 enum { SLOT_FREE, SLOT_CLAIMED, SLOT_SHOWN, SLOT_TAKEN };
 typedef struct pending_slot {
     atomic_u32 state;
@@ -52,7 +52,7 @@ typedef struct pending_slot {
 } pending_slot;
 static pending_slot pending[PENDING_COUNT];
 
-/* Where the bytes go: into the folder under a temporary name, or (folder_fd < 0) straight into fd. */
+/* Where the bytes go: to a temporary name in the folder, or (folder_fd < 0) straight into fd. */
 typedef struct output {
     int folder_fd;
     int fd;
@@ -72,11 +72,11 @@ static int close_quietly(int fd)
 {
     if (fd < 0)
         return 0;
-    /* On Linux the descriptor is gone after EINTR too. */
+    /* On Linux, close has closed the descriptor even where it returns EINTR. */
     return close(fd) == 0 || errno == EINTR ? 0 : -1;
 }
 
-/* Opens what is no regular file, without waiting in open itself, which no signal would end. */
+/* Opens a pipe or device without waiting in open itself, which no signal would end. */
 static int open_special(const run_context *run, const char *path)
 {
     for (;;) {
@@ -94,7 +94,7 @@ static int open_special(const run_context *run, const char *path)
     }
 }
 
-/* Waits until a pipe or device takes something. 0, or an errno. */
+/* Waits until a pipe or device takes something. Returns 0, or an errno. */
 static int wait_until_writable(const run_context *run, int fd)
 {
     for (;;) {
@@ -148,8 +148,8 @@ void atomic_file_unlink_pending(void)
     errno = saved_errno;
 }
 
-/* The number of an open descriptor that path stands for, or -1. Opening such a path again would begin at offset 0 of a
- * redirected file; and renaming over it would replace a link in /dev. */
+/* Returns the number of the open descriptor that a path like /dev/stdout stands for, or -1. Opening such a path again
+ * would begin at offset 0 of a redirected file; and renaming over it would replace a link in /dev. */
 static int descriptor_of(const char *path)
 {
     static const char *const folders[] = {"/dev/fd/", "/proc/self/fd/"};
@@ -212,7 +212,7 @@ static void make_temporary_name(const char *name, char out_name[NAME_MAX + 1])
     snprintf(out_name, NAME_MAX + 1, ".%.*s%s%s", NAME_MAX - SUFFIX_LENGTH - 1, name, TEMPORARY, suffix);
 }
 
-/* Whether it could have been made by make_temporary_name for that name. */
+/* Returns whether make_temporary_name could have made this name for that file. */
 static bool is_temporary_name(const char *of_name, const char *name)
 {
     char prefix[NAME_MAX + 1];
@@ -399,7 +399,7 @@ static int write_pieces(void *user, int fd)
     return error;
 }
 
-/* Everything from the first byte to the rename; 0 or -1 with errno. */
+/* Does everything from the first byte to the rename. Returns 0, or -1 with errno. */
 static int fill_and_rename(output *out, atomic_file_fill *fill, void *user)
 {
     const int error = fill(user, out->fd);
@@ -451,7 +451,8 @@ ag_status atomic_file_write_by(const run_context *run, const char *path, atomic_
     }
     if (out.folder_fd >= 0) {
         hide_pending(out.slot);
-        /* EBADF: opened by O_PATH. EINVAL, ENOTSUP: a file system without it. The file is whole in any case. */
+        /* EBADF: the folder was opened by O_PATH. EINVAL, ENOTSUP: its file system has no fsync of folders. The file is
+         * whole in any case. */
         if (fsync(out.folder_fd) != 0 && errno != EBADF && errno != EINVAL && errno != ENOTSUP)
             status =
                 failure(path, "it has its name, but its folder cannot be synchronised: ", errno, message, message_size);

@@ -36,7 +36,7 @@ typedef int atomic_file_fill(void *user, int descriptor);
 ag_status atomic_file_write_by(const run_context *run, const char *path, atomic_file_fill *fill, void *user,
                                char *message, size_t message_size);
 
-/* Whether atomic_file_write could begin now; found out by creating the temporary file and removing it. */
+/* Returns whether atomic_file_write could begin now, by creating the temporary file and removing it. */
 ag_status atomic_file_check(const char *path, char *message, size_t message_size);
 
 /* Ends all waits from now on for the reader of a FIFO or of standard output: where one is not ready, the writing fails.

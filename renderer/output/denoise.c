@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* oidn.h's, the same in releases 1 and 2. */
+/* Values of oidn.h, which are the same in releases 1 and 2. */
 typedef struct oidn_device_object *oidn_device;
 typedef struct oidn_filter_object *oidn_filter;
 enum { OIDN_CPU = 1, OIDN_FLOAT3 = 3 };
@@ -30,7 +30,8 @@ typedef struct oidn_library {
     void (*release_filter)(oidn_filter filter);
 } oidn_library;
 
-/* The first of two names that is there: release 2 renamed some, and kept the old ones in its header alone. */
+/* Returns the function of the first of two names that the library has: release 2 renamed some, and kept the old names
+ * in its header alone. */
 static bool find(void *handle, void *out_function, const char *name, const char *old_name)
 {
     void *found = dlsym(handle, name);
@@ -81,7 +82,7 @@ ag_status denoise_check(char *message, size_t message_size)
     return AG_OK;
 }
 
-/* The first error since the last question; device NULL: of making one. */
+/* Returns the first error since the last question; device NULL: the error of making one. */
 static bool has_failed(const oidn_library *library, oidn_device device, char *message, size_t message_size)
 {
     const char *reason = NULL;

@@ -10,11 +10,11 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-/* Whether the library is there. Errors: AG_ERROR_SYSTEM, with what was tried in message. */
+/* Checks whether the library is there. Errors: AG_ERROR_SYSTEM, with what was tried in message. */
 ag_status denoise_check(char *message, size_t message_size);
 
-/* color, scene-linear, is replaced; albedo and normal may be NULL; 3 floats a pixel each, packed. Errors:
- * AG_ERROR_SYSTEM, AG_ERROR_MEMORY. */
+/* Denoises a picture. color, scene-linear, is replaced; albedo and normal may be NULL; 3 floats a pixel each, packed.
+ * Errors: AG_ERROR_SYSTEM, AG_ERROR_MEMORY. */
 ag_status denoise_picture(int width, int height, float *color, const float *albedo, const float *normal,
                           unsigned thread_count, char *message, size_t message_size);
 

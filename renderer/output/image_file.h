@@ -24,7 +24,8 @@ typedef struct image_format {
     bool has_layers; /* beside red, green and blue; and attributes of any kind */
 } image_format;
 
-/* NULL where the extension is not known. Known: exr, hdr, pfm, png, tif, tiff, jpg, jpeg. Needs no module. */
+/* Returns the format of a file name's extension; NULL where it is not known. Known are exr, hdr, pfm, png, tif, tiff,
+ * jpg, jpeg. Needs no module. */
 const image_format *image_format_of(const char *path);
 
 /* The types a format can hold. */
@@ -40,8 +41,8 @@ bool image_format_can_hold(const image_format *format, image_sample_type type);
 ag_status image_file_write(const run_context *run, const char *path, const image_description *description,
                            const float *pixels, char *message, size_t message_size);
 
-/* Whether a file could be created at path now: the extension is known, its folder exists and may be written, it is no
- * folder itself, the module can be opened where the format needs it. Called before a long render. Errors:
+/* Checks whether a file could be created at path now: the extension is known, its folder exists and may be written, it
+ * is no folder itself, and the module can be opened where the format needs it. Called before a long render. Errors:
  * AG_ERROR_OUTPUT, AG_ERROR_SYSTEM. */
 ag_status image_file_check_target(const char *path, char *message, size_t message_size);
 

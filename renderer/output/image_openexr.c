@@ -43,7 +43,7 @@ static void keep_first_message(exr_const_context_t context, exr_result_t code, c
         snprintf(file->message, file->message_size, "OpenEXR cannot encode it: %s", text);
 }
 
-/* The table of the chunks' offsets is written over, at the end. */
+/* The table of the chunks' offsets is written last, over the zeros at its place. */
 static int64_t write_bytes(exr_const_context_t context, void *user, const void *bytes, uint64_t size, uint64_t offset,
                            exr_stream_error_func_ptr_t report)
 {
@@ -144,7 +144,7 @@ static exr_result_t write_header(exr_file *file)
 
 /* --- the pixels --- */
 
-/* The file's order is that of names, the description's is the layers'. */
+/* The file orders channels by their names, the description by layers. */
 static bool find_channels(exr_file *file)
 {
     const image_description *d = file->description;

@@ -76,8 +76,8 @@ static bool ends_with(const char *text, const char *end)
     return length >= end_length && strcmp(text + length - end_length, end) == 0;
 }
 
-/* Whether a layer's red, green and blue begin with this channel. Variances are no colours; the picture's own are
- * converted before. */
+/* Returns whether a layer's red, green and blue begin with this channel. Variances are no colours; the picture's own
+ * channels are converted before. */
 static bool is_color_layer(const aov_layout *layout, int channel)
 {
     const film_channel *c = &layout->channels[channel];
@@ -86,7 +86,7 @@ static bool is_color_layer(const aov_layout *layout, int channel)
            c->source != CHANNEL_RELATIVE_VARIANCE;
 }
 
-/* Layers of colours to the colour space that is asked for. */
+/* Converts layers of colours to the colour space that is asked for. */
 static ag_status convert_layers(ag_context *context, const ag_film *film, const ag_output_settings *settings,
                                 picture_layers *layers)
 {
@@ -107,7 +107,7 @@ static ag_status convert_layers(ag_context *context, const ag_film *film, const 
     return status;
 }
 
-/* The channels of a format with layers. out_layers: to be reset by the caller, on failure too. */
+/* Makes the channels of a format with layers. out_layers: to be reset by the caller, on failure too. */
 static ag_status make_layers(ag_context *context, const ag_film *film, const ag_output_settings *settings,
                              image_sample_type type, const output_color_tag *tag, const float *pixels, const char *path,
                              picture_layers *out_layers)

@@ -6,11 +6,12 @@
 
 #include "context.h"
 
-/* Whether the settings have the library's size, and values in range; said in the log. Errors: AG_ERROR_ARGUMENT. */
+/* Checks that the settings have the library's size, and values in range; says in the log what is wrong. Errors:
+ * AG_ERROR_ARGUMENT. */
 ag_status output_settings_check(ag_context *context, const ag_output_settings *settings);
 
-/* Whether the settings name what the config has; said in the log. The default view, which takes 10 ms to make, is asked
- * for only where the file is not scene_linear. Errors: AG_ERROR_COLOR, AG_ERROR_MEMORY. */
+/* Checks that the settings name what the config has; says in the log what is wrong. The default view, which takes 10 ms
+ * to make, is looked up only where the file is not scene_linear. Errors: AG_ERROR_COLOR, AG_ERROR_MEMORY. */
 ag_status output_color_check(ag_context *context, const ag_output_settings *settings, bool scene_linear);
 
 /* Converts count pixels of 3 floats in place: scene-linear ones to settings->color_space, where that is given; others
@@ -19,7 +20,7 @@ ag_status output_color_check(ag_context *context, const ag_output_settings *sett
 ag_status output_color_apply(ag_context *context, const ag_output_settings *settings, bool scene_linear, float *pixels,
                              uint64_t count);
 
-/* The colour space that a scene-linear file names. */
+/* Returns the colour space that a scene-linear file names. */
 typedef struct output_color_tag {
     const char *color_space; /* for oiio:ColorSpace; lives as long as the context */
     bool has_chromaticities; /* not where it is no linear space */

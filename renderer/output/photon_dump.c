@@ -9,7 +9,7 @@
 
 enum { FLOATS = 12, RECORD_BYTES = FLOATS * 4 + 2, HEAD_BYTES = 1024 };
 
-/* Photon by photon, whether its irradiance is there: in flags so many bytes apart. */
+/* Notes for each photon whether its irradiance is there: in flags so many bytes apart. */
 static void mark_demanded(const photon_map *map, unsigned char *first)
 {
     for (uint32_t i = 0; i < map->irradiance_photons.count; i++) {

@@ -66,7 +66,8 @@ static ag_status fill_pixels(ag_context *context, const ag_film *film, const flo
 
 /* --- attributes --- */
 
-/* One more; where there is no memory for it, has_failed says so in the end. text, where it is not NULL, is taken. */
+/* Adds an attribute; where there is no memory for it, has_failed says so in the end. text, where it is not NULL, is
+ * taken. */
 static void add_attribute(picture_layers *out, image_attribute attribute, char *text)
 {
     image_attribute *attributes = out->attributes;
@@ -137,7 +138,7 @@ static void read_cpu_name(char *out, size_t size)
         fclose(file);
 }
 
-/* Attributes that differ from run to run. */
+/* Adds the attributes that differ from run to run. */
 static void describe_run(ag_context *context, const ag_output_settings *settings, picture_layers *out)
 {
     ag_statistics s = ag_context_statistics(context);

@@ -26,7 +26,7 @@ typedef struct picture_layers {
 ag_status picture_layers_create(ag_context *context, const ag_film *film, const float *beauty,
                                 const ag_output_settings *settings, image_sample_type type, const char *path,
                                 picture_layers *out_layers);
-/* One more attribute; name and numbers stay the caller's, and there. Errors: AG_ERROR_MEMORY. */
+/* Adds an attribute; name and numbers stay the caller's, and have to live as long. Errors: AG_ERROR_MEMORY. */
 ag_status picture_layers_add_numbers(picture_layers *layers, const char *name, const float *numbers, int count);
 void picture_layers_reset(picture_layers *layers);
 

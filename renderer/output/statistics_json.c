@@ -86,7 +86,8 @@ static json_t *value_of(const setting_row *row, const ag_render_settings *settin
     return json_string(text);
 }
 
-/* The object of that name in the root, made where it is not there; the root where the name is empty. */
+/* Returns the object of that name in the root, and makes it where it is not there; the root itself where the name is
+ * empty. */
 static json_t *object_in(json_t *root, const char *name)
 {
     json_t *object = name[0] ? json_object_get(root, name) : root;
