@@ -9,7 +9,7 @@ typedef struct display_address {
     char host[256], port[8];
 } display_address;
 
-/* False where the text is no such address; the port is a number in [1, 65535]. */
+/* Returns false where the text is no such address; the port is a number in [1, 65535]. */
 bool display_address_parse(const char *text, display_address *out_address);
 
 #endif

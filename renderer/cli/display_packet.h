@@ -16,10 +16,10 @@ typedef struct display_packet {
     unsigned char bytes[DISPLAY_PACKET_BYTES_MAX];
 } display_packet;
 
-/* A new picture, black, with the channels R, G and B; the viewer is to show it. */
+/* Makes the packet of a new picture, black, with the channels R, G and B; the viewer is to show it. */
 void display_packet_create_picture(display_packet *out_packet, const char *name, int width, int height);
 
-/* A packet with one channel of a tile. pixels: RGB, rows without gaps; channel: 0, 1, 2. */
+/* Makes a packet with one channel of a tile. pixels: RGB, rows without gaps; channel: 0, 1, 2. */
 void display_packet_update_channel(display_packet *out_packet, const char *name, int channel, const ag_tile *tile,
                                    const float *pixels);
 

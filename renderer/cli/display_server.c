@@ -49,7 +49,7 @@ struct display_server {
     bool is_reached; /* there has been a connection */
     bool has_warned;
     uint64_t sent_bytes;
-    /* the sender's alone */
+    /* used by the sender's thread alone */
     int socket; /* -1: none */
     int64_t next_attempt_ms;
     uint64_t opened_turn;  /* which film the viewer has a picture of; 0: none */
@@ -71,7 +71,7 @@ static bool is_wanted(display_server *d, uint64_t turn)
     return wanted;
 }
 
-/* Tells the first misfortune only. */
+/* Warns of a failure, the first time only. */
 static void warn(display_server *d, const char *what, const char *why)
 {
     char text[512];
@@ -95,7 +95,7 @@ static void disconnect(display_server *d)
     d->opened_turn = 0;
 }
 
-/* Waits until the socket takes something, as long as the film is wanted. 0, or an error's number. */
+/* Waits until the socket takes something, as long as the film is wanted. Returns 0, or an errno. */
 static int wait_for_socket(display_server *d, uint64_t turn, int patience_ms)
 {
     struct pollfd waiting = {.fd = d->socket, .events = POLLOUT};
@@ -192,7 +192,7 @@ static bool send_packet(display_server *d, const display_packet *packet, uint64_
     return error == 0;
 }
 
-/* Whether the viewer is still there, as far as can be told. */
+/* Returns whether the viewer is still there, as far as can be told. */
 static int connection_error(const display_server *d)
 {
     unsigned char byte;
@@ -242,7 +242,8 @@ static bool open_picture(display_server *d, uint64_t turn)
     return true;
 }
 
-/* Gives a tile that the viewer does not have as it is now; which: where the search begins; then the tile behind. */
+/* Finds a tile that the viewer does not have as it is now, and counts it as sent. *which: where the search begins; it
+ * then stands behind the tile. Returns false where there is none. */
 static bool take_changed_tile(display_server *d, uint64_t turn, size_t *which, ag_tile *out_tile, float *out_pixels)
 {
     bool is_taken = false;
@@ -313,7 +314,7 @@ static void *run(void *user)
 
 /* --- main's --- */
 
-/* Signals are for the thread that has handlers in mind. */
+/* Starts the thread with all signals blocked, since the main thread handles them. */
 static bool start_thread(display_server *d)
 {
     sigset_t all, before;
@@ -401,8 +402,8 @@ void display_server_show(display_server *d, const ag_film *film, const char *nam
     pthread_mutex_unlock(&d->lock);
 }
 
-/* Waits until the film is sent, with the lock: false where it is not when the patience is over, or a signal to stop has
- * come. */
+/* Waits, with the lock held, until the film is sent. Returns false where the patience is over first, or a signal to
+ * stop has come. */
 static bool await_sent(display_server *d, int64_t patience_ms)
 {
     const int64_t end_ms = now_ms() + (patience_ms < LEAVE_TOTAL_MS ? patience_ms : LEAVE_TOTAL_MS);

@@ -17,7 +17,7 @@
 
 enum { LINK_LIMIT = 40 };
 
-/* The file that a path names: one that is there, or a name in a folder. */
+/* The identity of the file that a path names: one that is there, or a name in a folder. */
 typedef struct named_file {
     const char *path;
     bool is_there, is_regular;
@@ -26,7 +26,8 @@ typedef struct named_file {
     char name[NAME_MAX + 1]; /* in that folder */
 } named_file;
 
-/* Where a file of this name would be made: what a chain of symbolic links ends at. Owned; NULL when out of memory. */
+/* Returns the path where a file of this name would be made: what a chain of symbolic links ends at. Owned; NULL when
+ * out of memory. */
 static char *end_of_links(const char *path)
 {
     char *end = strdup(path), target[PATH_MAX];
@@ -45,7 +46,8 @@ static char *end_of_links(const char *path)
     return end;
 }
 
-/* A folder that is not there gives nothing to compare; the output's own check says so. */
+/* Finds the identity of the file that a path names. A folder that is not there gives nothing to compare; the check of
+ * the output itself reports it. */
 static named_file find(const char *path)
 {
     named_file file = {.path = path};
@@ -70,7 +72,7 @@ static named_file find(const char *path)
     return file;
 }
 
-/* Devices and pipes may be named twice: nothing is replaced there. */
+/* Returns whether two names lead to one file. Devices and pipes may be named twice, since nothing is replaced there. */
 static bool is_one_file(const named_file *a, const named_file *b)
 {
     if (a->is_there && b->is_there)
@@ -81,7 +83,7 @@ static bool is_one_file(const named_file *a, const named_file *b)
            strcmp(a->name, b->name) == 0;
 }
 
-/* The files to be written, those beside pictures included; ended by NULL. NULL when out of memory. */
+/* Lists the files to be written, those beside pictures included, ended by NULL. NULL when out of memory. */
 typedef struct output_list {
     const char **paths; /* the first own_count are the options' own */
     char **made;        /* owned: those beside pictures */
@@ -182,7 +184,8 @@ bool file_conflicts_with_scene(const options *o, const ag_scene *scene)
     if (is_written_over(o, scene))
         return true;
     bool has = false;
-    /* The first frame's files are likely to be those of the others. */
+    /* the files that the first frame has read are likely to be those of the others, so all names to be written are
+     * compared */
     for (int i = 1; all && o->frame == all->frames.numbers[0] && i < all->frames.count && !has; i++) {
         options other;
         has = frame_options_make(all, all->frames.numbers[i], &other) && !picture_files_are_there(&other) &&
@@ -273,7 +276,7 @@ static int compare_uses(const void *a, const void *b)
                                     : (of_a->frame > of_b->frame) - (of_a->frame < of_b->frame);
 }
 
-/* Whether one frame would write over what another one reads or writes. */
+/* Returns whether one frame would write over what another one reads or writes. */
 static bool is_conflict(const options *o, const file_use *a, const file_use *b)
 {
     const int *numbers = o->frames.numbers;

@@ -6,16 +6,16 @@
 
 #include "options.h"
 
-/* Whether two of the files to be written are one, or one of them is the scene's file or the colour config. Says which,
- * on standard error. */
+/* Returns whether two of the files to be written are one, or one of them is the scene's file or the colour config. Says
+ * which, on standard error. */
 bool file_conflicts_of_options(const options *o);
 
-/* AG_ERROR_ARGUMENT where a frame would write what another one reads, or has written; says which, on standard error.
- * AG_ERROR_MEMORY. */
+/* Returns AG_ERROR_ARGUMENT where a frame would write what another one reads or has written, and says which on standard
+ * error; or AG_ERROR_MEMORY. */
 ag_status file_conflicts_of_frames(const options *o);
 
-/* Whether a file to be written is one that the scene was read from, at the first frame also one that a later frame is
- * to write. Says which, on standard error. */
+/* Returns whether a file to be written is one that the scene was read from; at the first frame, also whether it is one
+ * that a later frame is to write. Says which, on standard error. */
 bool file_conflicts_with_scene(const options *o, const ag_scene *scene);
 
 #endif

@@ -67,7 +67,8 @@ static bool is_same_size(const terminal_size *a, const terminal_size *b)
            a->cell_height == b->cell_height;
 }
 
-/* How many rows it has; 0: it could not be made. drawn_rows: those of the picture in whose place it is. */
+/* Draws the picture, and returns how many rows it has; 0: it could not be made. drawn_rows: those of the picture in
+ * whose place it is drawn. */
 static int write_picture(const film_watch *w, FILE *made, const terminal_size *size, int width, int height,
                          bool is_by_sixels, int drawn_rows)
 {
@@ -92,7 +93,7 @@ static void draw(film_watch *w, FILE *terminal, terminal_size *size)
     FILE *made = open_memstream(&text, &length);
     if (!made)
         return;
-    /* in a terminal of another size the rows have wrapped or gone: the picture begins anew below them */
+    /* after the terminal has changed its size, rows are wrapped or gone: the picture begins anew below them */
     const int drawn_rows = is_same_size(size, &w->drawn_in) ? w->drawn_rows : 0;
     const int rows = write_picture(w, made, size, width, height, is_by_sixels, drawn_rows);
     if (fclose(made) == 0 && rows > 0) { /* at once: standard error has no buffer */

@@ -31,7 +31,7 @@ void film_watch_begin(film_watch *w, ag_view *view, const terminal_abilities *ab
 /* Forgets the view and the film; what is drawn stays. */
 void film_watch_end(film_watch *w);
 
-/* From now on this film is shown. Errors: AG_ERROR_MEMORY. */
+/* Shows this film from now on. Errors: AG_ERROR_MEMORY. */
 ag_status film_watch_show(film_watch *w, const ag_film *film);
 
 /* Draws the picture in place of the one before, where there is a new one and drawing has not just been done; is_last:

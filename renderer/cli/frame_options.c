@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The definitions of one frame: its number in their values, and as "frame" where that is not defined. */
+/* Makes the definitions of one frame: its number in their values, and as "frame" where that is not defined. */
 static bool define_frame(const options *o, int frame, options *one)
 {
     char number[16];

@@ -5,7 +5,8 @@
 
 #include "options.h"
 
-/* False when out of memory; *out_one is to be reset in either case, before o is. */
+/* Makes the options of one frame. Returns false when out of memory; *out_one is to be reset in either case, before o
+ * is. */
 bool frame_options_make(const options *o, int frame, options *out_one);
 
 /* outfile_count: as of the options that it was made of; a name that was added is not freed. */

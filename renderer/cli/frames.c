@@ -65,7 +65,7 @@ void frames_reset(frame_list *frames)
     *frames = (frame_list){0};
 }
 
-/* The length of a placeholder at the beginning of the text, 0: there is none; and its digits. */
+/* Returns the length of a placeholder at the beginning of the text, 0: there is none; and finds its digits. */
 static int placeholder_at(const char *text, int *out_digits)
 {
     int used = (int)strspn(text, "#");

@@ -12,14 +12,14 @@ typedef struct frame_list {
 
 enum { FRAMES_MAX = 1000000 };
 
-/* "1-100", "1-100x2", "10-1", "7", and several of these with commas between; numbers from 0 on. False where the text is
- * none of these, or says more than FRAMES_MAX. */
+/* Parses "1-100", "1-100x2", "10-1", "7", and several of these with commas between; numbers from 0 on. Returns false
+ * where the text is none of these, or says more frames than FRAMES_MAX. */
 bool frames_parse(const char *text, frame_list *out_frames);
 void frames_reset(frame_list *frames);
 
-/* Whether a name has a placeholder for the number: %d, %04d, or a run of #, one for each digit at least. */
+/* Returns whether a name has a placeholder for the number: %d, %04d, or a run of #, one for each digit at least. */
 bool frames_has_placeholder(const char *name);
-/* The name with the number in every placeholder; to be freed, NULL when out of memory. */
+/* Returns the name with the number in every placeholder; to be freed, NULL when out of memory. */
 char *frames_name(const char *name, int frame);
 
 #endif

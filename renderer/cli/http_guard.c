@@ -30,7 +30,8 @@ bool http_guard_knows(const http_guard *guard, const char *token)
     return differing == 0;
 }
 
-/* The name without the port, which must be the server's; HTTP's own port may be left out. */
+/* Finds the name in a Host header; its port must be the server's, and HTTP's own may be left out. Returns false where
+ * it is not so. */
 static bool split_host(const char *host, unsigned port, char *out_name, size_t size)
 {
     const char *end = host[0] == '[' ? strchr(host, ']') : strchr(host, ':');
@@ -46,7 +47,7 @@ static bool split_host(const char *host, unsigned port, char *out_name, size_t s
     return (host[length] == ':' || host[length] == '\0') && (unsigned)given == port;
 }
 
-/* An address as a number; those in brackets are IPv6. */
+/* Returns whether the name is an address in numbers; those in brackets are IPv6. */
 static bool is_number(const char *name, bool *out_is_loopback)
 {
     struct in_addr four;

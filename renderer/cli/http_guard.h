@@ -17,14 +17,14 @@ typedef struct http_guard {
     unsigned port;
 } http_guard;
 
-/* A token that nobody can guess. False: the system gives no random numbers. */
+/* Makes a token that nobody can guess. Returns false where the system gives no random numbers. */
 bool http_guard_make_token(http_guard *guard);
-/* Compares in a time that does not tell how much is right. token NULL: false. */
+/* Compares in a time that does not tell how much of the text is right. token NULL: returns false. */
 bool http_guard_knows(const http_guard *guard, const char *token);
-/* Whether a Host header names this server: localhost or a number of an address, where others can reach it also the
- * machine's name; a name of anybody else's is none. */
+/* Returns whether a Host header names this server: localhost, or an address in numbers, or, where others can reach the
+ * server, the machine's name. Any other name may be an attacker's, and is refused. */
 bool http_guard_is_own_host(const http_guard *guard, const char *host);
-/* Whether an Origin header is of a page that this server has sent to that host. */
+/* Returns whether an Origin header is of a page that this server has sent to that host. */
 bool http_guard_is_own_origin(const char *origin, const char *host);
 
 #endif

@@ -99,7 +99,8 @@ static struct MHD_Response *make_response(const http_answer *answer)
     return response;
 }
 
-/* The page is of one file, and nothing else is loaded; nobody may frame it, or read it from elsewhere. */
+/* What the browser may do with the page: load nothing besides it, show it in no frame, and read it from
+ * nowhere else. */
 static const char *const HEADERS[][2] = {
     {"Content-Security-Policy",
      "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src 'self' blob:; "
@@ -161,7 +162,8 @@ const char *http_request_value(const http_request *request, const char *name)
 
 static http_answer refusal(unsigned status, const char *text) { return (http_answer){.status = status, .text = text}; }
 
-/* The length of the body that is announced; false: it is not a number, or none is announced in a way that is known. */
+/* Finds the announced length of the body. Returns false where it is not a number, or is announced in no way that is
+ * known. */
 static bool body_length(struct MHD_Connection *connection, size_t *out_length)
 {
     const header_search length = find_header(connection, "Content-Length");
@@ -179,7 +181,8 @@ static bool body_length(struct MHD_Connection *connection, size_t *out_length)
     return *length.value != '\0';
 }
 
-/* The refusal of a request whose method, headers or length are not as they should be; status 0: it is not refused. */
+/* Returns the refusal of a request whose method, headers or length are not as they should be; status 0: it is not
+ * refused. */
 static http_answer check_request(const http_server *s, struct MHD_Connection *connection, const char *method)
 {
     size_t length;
@@ -204,8 +207,8 @@ static http_answer check_request(const http_server *s, struct MHD_Connection *co
 
 /* --- who is there --- */
 
-/* Closes the connection that has waited for longest without a whole request, where there are too many: slow ones do not
- * keep others out. */
+/* Where there are too many connections, closes the one that has waited longest for a whole request, so that slow ones
+ * do not keep others out. */
 static void make_room(http_server *s)
 {
     struct visitor *oldest = NULL;
@@ -350,7 +353,7 @@ static unsigned port_of(int listener)
     return ntohs(at.any.sa_family == AF_INET ? at.four.sin_port : at.six.sin6_port);
 }
 
-/* Signals are for the thread that has handlers in mind. */
+/* Starts the threads with all signals blocked, since the main thread handles them. */
 static struct MHD_Daemon *start_daemon(http_server *s, int listener)
 {
     sigset_t all, before;
@@ -366,7 +369,7 @@ static struct MHD_Daemon *start_daemon(http_server *s, int listener)
     return daemon;
 }
 
-/* The name by which the machine itself reaches the address. */
+/* Returns the name by which the machine itself reaches the address. */
 static void make_url(const http_guard *guard, bool is_any, char *out, size_t size)
 {
     const char *host = !is_any ? guard->address : guard->machine[0] ? guard->machine : "localhost";

@@ -21,7 +21,7 @@ typedef struct http_request {
     void *connection;
 } http_request;
 
-/* A value of the URL's query; NULL: it is not there. Lives as long as the request. */
+/* Returns a value of the URL's query; NULL: it is not there. Lives as long as the request. */
 const char *http_request_value(const http_request *request, const char *name);
 
 typedef struct http_answer {
@@ -35,11 +35,11 @@ typedef http_answer http_answer_fn(void *user, const http_request *request);
 
 typedef struct http_server http_server;
 
-/* Listens at an address, which is a number of IPv4 or IPv6, and a port, 0 for any that is free. out_url: of the path /
- * with the token. NULL: it cannot, and out_why, of why_size bytes, says why. */
+/* Listens at an address in numbers, of IPv4 or IPv6, and a port, 0 for any that is free. out_url: of the path / with
+ * the token. Returns NULL where it cannot, and out_why, of why_size bytes, says why. */
 http_server *http_server_start(const char *address, int port, http_answer_fn *answer, void *user, char *out_url,
                                size_t url_size, char *out_why, size_t why_size);
-/* Ends all connections, in half a second at the most; what is answered within that is. NULL is fine. */
+/* Ends all connections within half a second; what can be answered by then is. NULL is fine. */
 void http_server_stop(http_server *server);
 
 #endif

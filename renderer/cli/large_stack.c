@@ -9,7 +9,8 @@
 #include <string.h>
 #include <sys/resource.h>
 
-/* With less than this the thread is wanted, with so much it is made: what systems usually give. */
+/* Where the limit on the stack is below the first size, the thread is made, with a stack of the second, which is what
+ * systems usually have. */
 static const size_t ENOUGH_BYTES = (size_t)4 << 20, STACK_BYTES = (size_t)8 << 20;
 
 typedef struct call {

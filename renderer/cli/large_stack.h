@@ -6,8 +6,9 @@
 
 typedef int large_stack_fn(int argc, char **argv);
 
-/* Calls fn, in a thread of its own where the limit is low; that thread's memory does not count against it. Threads
- * that libraries start have large stacks then, too. Where no thread can be had, says so and returns 3. */
+/* Calls fn, in a thread of its own where the limit on the stack is low; that thread's memory does not count
+ * against the limit. Threads that libraries start then have large stacks, too. Where no thread can be had,
+ * says so and returns 3. */
 int large_stack_call(large_stack_fn *fn, int argc, char **argv);
 
 #endif

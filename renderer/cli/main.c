@@ -40,10 +40,11 @@ static int exit_code(ag_status status)
     return 3;
 }
 
-/* Where nothing is asked for: the scene's own file name, else the scene file's with .exr, in the working directory. */
+/* The output where none is asked for: the scene's own file name, else the scene file's with .exr, in the working
+ * directory. */
 static void name_default_output(const options *o, const ag_scene *scene, int frame, char *out_name, size_t size)
 {
-    /* where a stranger's scene is written, the stranger does not say */
+    /* a confined scene does not say where it is written */
     const char *own = o->context.is_confined ? NULL : ag_scene_film_file_name(scene);
     if (own && frame < 0) {
         snprintf(out_name, size, "%s", own);
@@ -80,7 +81,7 @@ static ag_status list_displays(ag_context *context)
     return fputs(text, stdout) < 0 || fflush(stdout) != 0 ? AG_ERROR_OUTPUT : AG_OK;
 }
 
-/* Whether the picture is not rendered, since all its files are there; says so. */
+/* Returns whether the picture is left out, since all its files are there; says so. */
 static bool is_there(const options *o)
 {
     const bool is_skipped = picture_files_are_there(o);
@@ -89,8 +90,8 @@ static bool is_there(const options *o)
     return is_skipped;
 }
 
-/* The bytes that it takes to show the picture to who watches in a browser, for whom the film is there once more, or in
- * the terminal. p: the prediction without them. */
+/* Returns the bytes that it takes to show the picture in a browser, which needs the film once more, or in the terminal.
+ * p: the prediction without them. */
 static uint64_t shown_bytes(const options *o, const ag_render_settings *settings, const ag_prediction *p)
 {
     const double *crop = settings->crop_window;
@@ -208,7 +209,7 @@ static ag_status tell_statistics(picture_run *r, ag_status status, const passes_
         ag_statistics statistics = ag_context_statistics(r->context);
         summary_print(stderr, &statistics);
     }
-    /* before there was any picture */
+    /* whether the run was ended before there was any picture */
     const bool is_stopped = status == AG_CANCELLED && (signals_stop() || signals_is_time_up()) && !is_made;
     if (!o->stats || !(is_made || r->lacks_memory || is_stopped))
         return status;

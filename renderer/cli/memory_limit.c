@@ -12,7 +12,7 @@
 #include <time.h>
 #include <unistd.h>
 
-/* A line "NAME: N kB" of /proc/self/status, in bytes; 0 where there is none. */
+/* Returns the value of a line "NAME: N kB" of /proc/self/status, in bytes; 0 where there is none. */
 static uint64_t status_bytes(const char *name)
 {
     char line[256];
@@ -36,7 +36,7 @@ static struct {
     atomic_bool is_over, has_more; /* is_over tells the thread to end; has_more is read when it has ended */
 } watch;
 
-/* Resident bytes of the process; 0: unknown. file: /proc/self/statm. */
+/* Returns the resident bytes of the process; 0: unknown. file: /proc/self/statm. */
 static uint64_t resident_bytes(int file)
 {
     char text[128];

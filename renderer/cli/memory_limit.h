@@ -9,8 +9,8 @@
 #include <stdbool.h>
 
 /* Makes allocations fail that would bring the process beyond so many resident bytes, if it touched all that it
- * allocates. Since libraries and heaps reserve what they never touch, 24 MB more are allowed; before the scene is there
- * (is_loaded), and with it what ray tracing reserves, 256 MB. */
+ * allocates. Libraries and heaps reserve what they never touch, so 24 MB more are allowed; before the scene is there
+ * (is_loaded false) 256 MB more, with what ray tracing reserves. */
 void memory_limit_set(uint64_t bytes, bool is_loaded);
 
 /* Begins to watch the process, while the scene is read: a thread looks every 2 ms how many resident bytes it has, and
@@ -21,10 +21,10 @@ void memory_limit_watch(uint64_t bytes, ag_context *context);
 /* Ends the watch of memory_limit_watch. Returns whether it has cancelled the context. */
 bool memory_limit_end_watch(void);
 
-/* Takes the limit away: for what the prediction does not know, and for the next picture's scene. */
+/* Takes the limit away, for work that the prediction does not cover, and for reading the next picture's scene. */
 void memory_limit_lift(void);
 
-/* Whether what is predicted keeps within the limit; says on standard error what does not. */
+/* Returns whether what is predicted keeps within the limit; says on standard error what does not. */
 bool memory_limit_holds(uint64_t bytes, const ag_prediction *prediction);
 
 #endif

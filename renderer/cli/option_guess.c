@@ -73,7 +73,7 @@ enum { LENGTH_MAX = 40, FAR = 100 };
 
 static int least(int a, int b) { return a < b ? a : b; }
 
-/* How many slips lie between two words. */
+/* Returns how many typing slips lie between two words. */
 static int distance(const char *a, const char *b)
 {
     const size_t length_a = strlen(a), length_b = strlen(b);
@@ -93,7 +93,7 @@ static int distance(const char *a, const char *b)
     return rows[length_a][length_b];
 }
 
-/* Keeps the answer to a word where fewer slips lead to it than to the best one so far. */
+/* Keeps a word as the answer where fewer slips lead to it than to the best one so far. */
 static void consider(const char *name, const char *word, const char *answer, int *in_out_nearest,
                      const char **in_out_best)
 {

@@ -3,7 +3,8 @@
 #ifndef AFTERGLOW_OPTION_GUESS_H
 #define AFTERGLOW_OPTION_GUESS_H
 
-/* name: without its hyphens, and without what follows a '='. NULL: nothing is near. The string is the library's. */
+/* Returns the option that was probably meant, a string of the library's; NULL: none is near. name: without its hyphens,
+ * and without what follows a '='. */
 const char *option_guess(const char *name);
 
 #endif

@@ -42,7 +42,7 @@ static void append_photon_map_settings(text_list *list, bool is_manual)
         }
 }
 
-/* Whether this layer is the first of its group. */
+/* Returns whether this layer is the first of its group. */
 static bool begins_group(size_t index)
 {
     const char *group = ag_layer_at(index)->group;
@@ -91,7 +91,7 @@ static void append_layers(text_list *list, bool is_manual)
     append(list, "%s", is_manual ? "." : "");
 }
 
-/* The text with lists instead of their names. */
+/* Returns the text with lists in the place of their names. */
 static void fill_in(const char *text, bool is_manual, text_list *out)
 {
     static const struct {
@@ -174,7 +174,8 @@ void option_help_print_line(FILE *out, const ag_setting *option)
 
 /* --- the man page --- */
 
-/* A character, so that roff takes it for no request or escape; a hyphen only between letters of plain text. */
+/* Writes a character so that roff takes it for no request or escape. A hyphen stays a hyphen between letters of plain
+ * text alone; elsewhere it is a minus, which can be copied. */
 static void print_character(FILE *out, const char *at, char before, bool is_plain)
 {
     if (*at == '\\')

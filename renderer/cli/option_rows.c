@@ -31,7 +31,7 @@ bool option_at(size_t index, listed_option *out_option)
     return false;
 }
 
-/* A seed with a placeholder for the frame's number is tried with one. */
+/* A seed with a placeholder for the frame's number is checked with a number in its place. */
 static bool take_seed_pattern(const char *value, options *o)
 {
     char *tried = frames_name(value, 1);
@@ -41,7 +41,7 @@ static bool take_seed_pattern(const char *value, options *o)
     return is_valid;
 }
 
-/* A setting is tried on o->render, and noted for options_override. */
+/* A setting is checked on o->render, and noted for options_override. */
 static bool take_setting(const ag_setting *setting, const char *value, options *o)
 {
     if (strcmp(setting->name, "seed") == 0) {

@@ -25,10 +25,10 @@ typedef struct listed_option {
     const option_row *row; /* NULL: a setting of the renderer */
 } listed_option;
 
-/* Every option, section by section; false: there are no more. */
+/* Finds every option, section by section; returns false where there are no more. */
 bool option_at(size_t index, listed_option *out_option);
 
-/* Puts an option's value into o; false where it is not valid. */
+/* Puts an option's value into o; returns false where it is not valid. */
 bool option_take(const listed_option *option, const char *value, options *o);
 
 #endif

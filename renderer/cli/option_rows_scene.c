@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* "NAME=VALUE"; of two with one name the last counts. Out of memory is told as not valid. */
+/* Takes "NAME=VALUE"; of two with one name the last counts. Running out of memory counts as not valid. */
 static bool take_definition(const char *text, options *o)
 {
     size_t length = strspn(text, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_"), i = 0;
@@ -109,7 +109,7 @@ static bool take_sun(const char *value, options *o)
     return true;
 }
 
-/* A grey, a colour, or else a file. */
+/* Takes a grey, a colour, or else a file. */
 static bool take_sky(const char *value, options *o)
 {
     float color[3];

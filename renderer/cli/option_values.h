@@ -7,17 +7,17 @@
 #include <stdint.h>
 
 bool parse_int(const char *text, int least, int most, int *out_value);
-/* Any number, infinity and what is not a number among them. */
+/* Parses any number, also infinity and NaN. */
 bool parse_float(const char *text, float *out_value);
-/* Finite numbers with commas between them; how many, at most so many. */
+/* Parses finite numbers with commas between them; returns how many, at most so many. */
 bool parse_floats(const char *text, int most, float *out_values, int *out_count);
-/* Above 0 and finite. */
+/* Parses a number above 0, finite. */
 bool parse_seconds(const char *text, double *out_seconds);
-/* Seconds, or HH:MM:SS. */
+/* Parses seconds, or HH:MM:SS. */
 bool parse_time(const char *text, double *out_seconds);
-/* Bytes, or with K, M, G or T at the end 1024, 1024^2, ... times as many; at least 1. */
+/* Parses bytes, or with K, M, G or T at the end 1024, 1024^2, ... times as many; at least 1. */
 bool parse_bytes(const char *text, uint64_t *out_bytes);
-/* I/N, 1 <= I <= N. */
+/* Parses I/N, 1 <= I <= N. */
 bool parse_tile(const char *text, int *out_index, int *out_count);
 /* Reads a word of a list, and gives its index there. */
 bool parse_word(const char *text, const char *const *words, int count, int *out_index);

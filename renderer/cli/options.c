@@ -16,7 +16,7 @@
 
 enum { OPTIONS_MAX = 128, FIRST_CODE = 256 }; /* codes below are letters */
 
-/* Frames would be written one over the other. */
+/* Refuses a name without a placeholder, under which each frame would be written over the one before. */
 static bool has_frames_in_one_file(const options *o)
 {
     const char *name = o->stats && !frames_has_placeholder(o->stats) ? o->stats : NULL;
@@ -45,7 +45,7 @@ static char *join_arguments(int argc, char **argv)
     return joined;
 }
 
-/* A seed for each frame wants frames. */
+/* Refuses a seed for each frame where there are no frames. */
 static bool has_odd_seeds(const options *o)
 {
     if (!o->seed_per_frame && !o->seed_pattern)
@@ -83,7 +83,7 @@ static bool has_idle_scene_option(const options *o)
     return true;
 }
 
-/* An address is one to listen at. */
+/* Refuses an address to listen at where nothing listens. */
 static bool has_idle_address(const options *o)
 {
     if (!o->serve_address || o->serves)
@@ -130,7 +130,7 @@ static bool has_idle_picture_option(const options *o)
     return true;
 }
 
-/* Where the config is to be shown, nothing is rendered. */
+/* Refuses a scene or an outfile where the displays are to be listed, since nothing is rendered then. */
 static bool has_scene_to_list(const options *o, int rest)
 {
     if (!o->lists_displays || (rest == 0 && o->outfile_count == 0))
@@ -140,7 +140,7 @@ static bool has_scene_to_list(const options *o, int rest)
     return true;
 }
 
-/* Where there is no picture, nothing may be asked of it. */
+/* Where photons alone are made, refuses options of a picture, and that no photons are written. */
 static bool has_picture_of_photons_only(const options *o)
 {
     if (!o->photons_only)
@@ -161,7 +161,7 @@ static bool has_picture_of_photons_only(const options *o)
     return idle || !has_file;
 }
 
-/* The option that getopt_long has found: by its number, which is no character's, or by its letter. */
+/* Returns the option that getopt_long has found: by its number, which is no character's, or by its letter. */
 static listed_option option_of_code(int code)
 {
     listed_option option;
@@ -174,7 +174,7 @@ static listed_option option_of_code(int code)
     return option;
 }
 
-/* Says in our words which option getopt_long did not take. */
+/* Tells, in a message of our own, which option getopt_long did not take. */
 static void tell_wrong_option(int code, char **argv)
 {
     char name[64];
@@ -327,7 +327,7 @@ void options_reset(options *o)
     *o = (options){0};
 }
 
-/* A band of the crop window's rows. */
+/* Cuts the crop window down to a band of its rows. */
 static bool take_tile(const options *o, ag_render_settings *settings)
 {
     double height = settings->height, *crop = settings->crop_window;

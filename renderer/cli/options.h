@@ -93,8 +93,8 @@ void options_free_definition(ag_definition *definition); /* its strings */
 /* How one of the outfiles is to be written. */
 ag_output_settings options_output(const options *o, int index);
 
-/* Puts what was given on the command line over the scene's settings. False where the picture has fewer rows than
- * tiles. */
+/* Puts what was given on the command line over the scene's settings. Returns false where the picture has fewer rows
+ * than tiles. */
 bool options_override(const options *o, const ag_scene *scene, ag_render_settings *settings);
 
 #endif

@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Layers that nobody has asked for in this time are no longer copied, and given back. */
+/* After this time without a request for it a layer is no longer copied, and its memory is freed. */
 static const double LAYER_SECONDS = 30.0;
 
 bool page_film_init(page_film *f)
@@ -25,7 +25,7 @@ static void free_view(page_view *view)
     *view = (page_view){0};
 }
 
-/* Forgets all that is the film's and its context's; the picture stays. */
+/* Forgets all that belongs to the film and its context; the picture stays. */
 static void forget_film(page_film *f)
 {
     for (int i = 0; i < PAGE_VIEWS; i++)

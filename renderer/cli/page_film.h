@@ -14,7 +14,7 @@
 
 enum { PAGE_VIEWS = 4 }; /* kept at once */
 
-/* A view that is kept, by what it was made of. */
+/* A view that is kept, with what it was made of. */
 typedef struct page_view {
     char *display, *view; /* owned; "": as the command line says */
     float exposure_stops;
@@ -51,28 +51,29 @@ void page_film_reset(page_film *f);
 
 /* --- main --- */
 
-/* From now on this rendering's film is shown, until page_film_leave. What was shown before stays, in the new size,
- * until there are new tiles over it. Errors: AG_ERROR_MEMORY, those of ag_view_create. */
+/* Shows this rendering's film until page_film_leave. What was shown before stays, in the new size, until there are new
+ * tiles over it. Errors: AG_ERROR_MEMORY, those of ag_view_create. */
 ag_status page_film_show(page_film *f, ag_context *context, const ag_rendering *rendering,
                          const ag_output_settings *output);
-/* The rendering is about to end; its film stays. */
+/* To be called before the rendering ends; its film stays. */
 void page_film_end_rendering(page_film *f);
 /* Copies the layers that were asked for in the last half minute; not while the film is being rendered. Without memory
  * there are none. */
 void page_film_copy_layers(page_film *f);
 void page_film_leave(page_film *f);
-/* page_film_leave, and no memory is held any more. */
+/* Does what page_film_leave does, and frees all memory. */
 void page_film_empty(page_film *f);
 
 /* --- requests: between the two calls of each; begin is false where there is no film, or main waits --- */
 bool page_film_begin(page_film *f);
 void page_film_end(page_film *f);
 
-/* The layer of that name; NULL: there is none. "": the picture. */
+/* Returns the layer of that name; NULL: there is none. "": the picture. */
 const page_layer *page_film_find(const page_film *f, const char *name);
-/* The layer's values as planes, or for the picture its pixels, and their version; NULL: they have yet to be copied. */
+/* Returns the layer's values as planes, or for the picture its pixels, and their version; NULL: they have yet to be
+ * copied. */
 const float *page_film_values(page_film *f, const page_layer *layer, uint64_t *out_version);
-/* A view; display and view "": the command line's. Errors: those of ag_view_create. */
+/* Returns a view; display and view "": those of the command line. Errors: those of ag_view_create. */
 ag_status page_film_view(page_film *f, const char *display, const char *view, float exposure_stops,
                          const ag_view **out_view);
 

@@ -8,12 +8,12 @@
 #include <string.h>
 
 static const char MATTE_OBJECT[] = "CryptoObject", MATTE_MATERIAL[] = "CryptoMaterial";
-/* Depth where there is nothing. */
+/* The depth where a ray meets nothing. */
 static const float FAR = 1e9f;
 
 static bool begins(const char *name, const char *with) { return strncmp(name, with, strlen(with)) == 0; }
 
-/* The layer that a channel belongs to, by its name; the letter of the channel within it, 0: it stands alone. */
+/* Finds the layer that a channel belongs to, by its name, and the channel's letter within it, 0: it stands alone. */
 static void name_layer(const char *channel, char *out_name, size_t size, char *out_letter)
 {
     const char *dot = strrchr(channel, '.');
@@ -62,7 +62,7 @@ page_layer *page_layers_list(const ag_film *film, size_t *out_count)
     return layers;
 }
 
-/* The least and the greatest of the values, without those that stand for nothing. */
+/* Finds the least and the greatest of the values, without those that stand for nothing. */
 static void find_range(const float *values, size_t count, float *out_least, float *out_span)
 {
     float least = INFINITY, most = -INFINITY;

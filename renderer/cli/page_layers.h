@@ -27,7 +27,7 @@ typedef struct page_layer {
     ag_layer matte; /* of PAGE_LAYER_MATTE: AG_LAYER_CRYPTO_OBJECT or AG_LAYER_CRYPTO_MATERIAL */
 } page_layer;
 
-/* All layers of the film, the picture first; to be freed. NULL: no memory. */
+/* Lists all layers of the film, the picture first; to be freed. NULL: no memory. */
 page_layer *page_layers_list(const ag_film *film, size_t *out_count);
 
 /* Makes a picture, of 3 floats a pixel in [0, 1], of a layer that is not seen through a view: a unit vector as (1 + v)

@@ -41,7 +41,7 @@ static bool is_known_view(ag_context *context, const char *display, const char *
     return false;
 }
 
-/* The answer is a refusal; status 0: there is nothing wrong. */
+/* A refusal for an answer; status 0: there is nothing wrong. */
 static http_answer parse(const page_film *film, const http_request *request, asked_picture *out)
 {
     const char *layer = http_request_value(request, "layer"), *display = http_request_value(request, "display"),
@@ -61,7 +61,7 @@ static http_answer parse(const page_film *film, const http_request *request, ask
     return length < (int)sizeof out->key ? (http_answer){0} : refusal(BAD_REQUEST, "These names are too long.\n");
 }
 
-/* A layer's values as pixels: colours side by side, what is no colour as it is drawn. */
+/* Makes pixels of a layer's values: colours stay as they are, page_layer_draw makes colours of all else. */
 static void fill_pixels(const page_film *film, const page_layer *layer, const float *values, float *out)
 {
     const size_t count = (size_t)film->width * (size_t)film->height;

@@ -9,7 +9,7 @@
 
 enum { PAGE_PICTURES_KEPT = 3, PAGE_PICTURES_MOST = 12 };
 
-/* A picture that is kept, by what it shows. */
+/* A picture that is kept, with what it shows. */
 typedef struct page_picture {
     char key[512];
     uint64_t turn, version;

@@ -28,7 +28,7 @@ static void write_values(FILE *out, const page_film *f, const page_layer *layer,
     fputs("]", out);
 }
 
-/* The names of what the pixel shows, by how much of it: ranks are in that order. */
+/* Writes the names of what the pixel shows, by how much of it: the ranks of a matte are in that order. */
 static void write_matte(FILE *out, const page_film *f, const page_layer *layer, const float *values, size_t pixel)
 {
     char name[NAME_SIZE];
@@ -47,7 +47,8 @@ static void write_matte(FILE *out, const page_film *f, const page_layer *layer, 
     fputs("]", out);
 }
 
-/* The layer and all mattes of the film; false: one of them is lacking. */
+/* Writes the pixel's values in the layer and all mattes of the film. Returns false where one of them has yet to be
+ * copied. */
 static bool write_pixel(FILE *out, page_film *f, const page_layer *layer, size_t pixel)
 {
     uint64_t version;

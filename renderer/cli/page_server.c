@@ -84,7 +84,7 @@ static http_answer answer_stop(page_server *s, const http_request *request)
     return say(NO_CONTENT, "");
 }
 
-/* The place is nine numbers with commas between: from, to and up. */
+/* Parses a place, nine numbers with commas between: from, to and up. */
 static http_answer answer_camera(page_server *s, const http_request *request)
 {
     enum { NUMBERS = 9 };
@@ -109,7 +109,7 @@ static http_answer answer_return(page_server *s, const http_request *request)
     return say(NO_CONTENT, "");
 }
 
-/* A path, and what is done for it; a request that changes something is a POST. */
+/* A path, and the function that answers it; a request that changes something is a POST. */
 static const struct {
     const char *path;
     bool is_post;

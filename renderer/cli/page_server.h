@@ -12,7 +12,7 @@
 
 /* Seconds without a request after which nobody watches any more: a page that is seen asks twice a second. */
 #define PAGE_PATIENCE_SECONDS 15.0
-/* Between two looks at signals, where wishes are waited for. */
+/* The seconds between two looks at signals while wishes are waited for. */
 #define PAGE_LOOK_SECONDS 0.1
 
 /* Bytes per pixel of a picture that is viewed: the picture, its copy under a view, a PNG under way, and those that are
@@ -31,9 +31,9 @@ void page_server_stop(page_server *server);
  * page_film_show. */
 ag_status page_server_show(page_server *server, ag_context *context, const ag_rendering *rendering,
                            const ag_output_settings *output, const page_notes *notes);
-/* The rendering is about to end; its film is still shown. */
+/* To be called before the rendering ends; its film is still shown. */
 void page_server_end_rendering(page_server *server);
-/* Tells what there is after a pass or in a pause, when no rendering is under way, and copies layers. */
+/* Notes the state after a pass or in a pause, when no rendering is under way, and copies layers. */
 void page_server_note(page_server *server, const page_notes *notes);
 /* Copies layers alone, when no rendering is under way. */
 void page_server_copy_layers(page_server *server);
@@ -45,7 +45,7 @@ void page_server_empty_film(page_server *server);
 /* Lets go of the film and the context; mode: what the page says meanwhile. */
 void page_server_leave(page_server *server, page_mode mode);
 
-/* server: not NULL. */
+/* Returns the wishes of those who watch. server: not NULL. */
 page_wishes *page_server_wishes(page_server *server);
 
 #endif

@@ -41,9 +41,9 @@ void page_state_note(page_state *s, const page_notes *notes);
 bool page_state_has_place(page_state *s);
 void page_state_set_mode(page_state *s, page_mode mode);
 
-/* The JSON, to be freed; NULL: no memory. film: of which the version is told. */
+/* Returns the state as JSON, to be freed; NULL: no memory. film: of which the version is told. */
 char *page_state_write(page_state *s, page_film *film, size_t *out_size);
-/* The layers, displays and views that there are; NULL where there is no film, too. */
+/* Returns the layers, displays and views as JSON; NULL where there is no film, too. */
 char *page_state_write_choices(page_film *film, size_t *out_size);
 
 #endif

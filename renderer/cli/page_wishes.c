@@ -31,7 +31,7 @@ void page_wishes_reset(page_wishes *w)
 
 /* --- requests --- */
 
-/* Notes a wish, and has main look at it. */
+/* Notes a wish, and pauses the rendering so that main looks at it. */
 static void wish(page_wishes *w, bool *which)
 {
     *which = true;

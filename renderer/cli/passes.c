@@ -53,7 +53,7 @@ static ag_status write_pictures(const passes *p, const ag_film *film, bool is_la
     return picture_files_write(p->context, p->o, film, is_last, p->is_view, p->is_written);
 }
 
-/* Notes that a file could not be written, for the end of the run: the other files are written all the same. */
+/* Notes, for the end of the run, that a file could not be written; the other files are written all the same. */
 static ag_status note_unwritten(passes *p, ag_status status)
 {
     if (status != AG_ERROR_OUTPUT)
@@ -77,7 +77,7 @@ static ag_status write_snapshot(passes *p)
 
 static ag_status write_checkpoint(passes *p)
 {
-    /* samples under way when a pause comes are lost: an interval too short for any to be completed would never end */
+    /* a pause loses the samples under way, so with an interval too short for a sample the run would never end */
     double mean = ag_rendering_sample_counts(p->rendering).mean;
     if (mean <= p->mean_at_checkpoint)
         p->checkpoint_interval *= 2.0;
@@ -128,7 +128,7 @@ static int next_pass(const passes *p, int samples, double seconds_per_sample)
     return affordable >= 1.0 ? samples + (int)affordable : 0;
 }
 
-/* Shows the picture itself in a browser, from now on. Without memory for that it is rendered all the same. */
+/* Shows the picture itself in a browser from now on. Where there is no memory for that, it is rendered all the same. */
 static ag_status show_page(const passes *p, page_mode mode)
 {
     const options *o = p->o;
@@ -155,8 +155,8 @@ static ag_status walk_about(passes *p, page_mode mode)
     return AG_OK;
 }
 
-/* Whether who watches wants the end, and there is something to keep: a view from elsewhere, or a picture of whole
- * passes, which the film then is. */
+/* Returns whether those who watch want the end, and there is something to keep: a view from elsewhere, or a picture of
+ * whole passes, which the film then is. */
 static bool is_kept(const passes *p, ag_status status)
 {
     if (!p->o->page || !page_wishes_has_end(page_server_wishes(p->o->page)))
@@ -164,7 +164,7 @@ static bool is_kept(const passes *p, ag_status status)
     return p->kept || status == AG_OK || ag_rendering_go_back(p->rendering) == AG_OK;
 }
 
-/* Tells who watches what there is of the picture. */
+/* Tells those who watch how far the picture is. */
 static void note_page(const passes *p)
 {
     if (!p->o->page || p->kept)
@@ -270,7 +270,7 @@ static ag_status begin(passes *p, const ag_scene *scene, const ag_render_setting
     return AG_OK;
 }
 
-/* The noise that is left, against what was asked for, and what would help most. */
+/* Tells the noise that is left beside what was asked for, and what would help most. */
 static void tell_noise(const ag_noise *noise, const ag_sample_counts *samples, const ag_render_settings *settings)
 {
     if (noise->level < 0.0)
@@ -377,14 +377,14 @@ static ag_status await_page(passes *p)
     return AG_OK;
 }
 
-/* The film goes. The viewer is waited for within the time limit. */
+/* Lets go of the film. The viewer is waited for within the time limit. */
 static void leave_watchers(const passes *p)
 {
     page_server_leave(p->o->page, is_last_frame(p->o) ? PAGE_FINISHED : PAGE_WAITING);
     display_server_leave(p->o->display, fmax(p->o->deadline - passes_seconds(), 0.0));
 }
 
-/* From now on the film is shown wherever it is wanted. */
+/* Shows the film from now on wherever it is wanted. */
 static ag_status show_to_watchers(const passes *p)
 {
     const ag_film *film = ag_rendering_film(p->rendering);

@@ -14,7 +14,7 @@ typedef struct passes_result {
     bool is_complete; /* it ended in order, if with AG_ERROR_OUTPUT since a file could not be written */
 } passes_result;
 
-/* Seconds of a monotonic clock, the one that options.begun is read from. */
+/* Returns the seconds of a monotonic clock, the one that options.begun is read from. */
 double passes_seconds(void);
 
 /* Renders, and writes every outfile; tells which were written. AG_CANCELLED: a signal ended it, or the time limit

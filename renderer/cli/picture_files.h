@@ -5,7 +5,8 @@
 
 #include "options.h"
 
-/* Whether a picture that may not be written over is not rendered, since all its files are there and complete. */
+/* Returns whether a picture is left out because it may not be written over, and all its files are there and
+ * complete. */
 bool picture_files_are_there(const options *o);
 
 /* Writes the film to each of the options' files. is_last: the picture is complete, so that its marks go. is_view: the

@@ -5,8 +5,8 @@
 
 #include <stddef.h>
 
-/* pixels: 3 floats each, of which [0, 1] is shown, rounded as the files of ag_film_write are; top row first. The bytes
- * are to be freed; NULL: no memory. */
+/* Makes a PNG file in memory. pixels: 3 floats each, of which [0, 1] is shown, rounded as ag_film_write does it; top
+ * row first. The bytes are to be freed; NULL: no memory. */
 unsigned char *png_picture_encode(const float *pixels, int width, int height, size_t *out_size);
 
 #endif

@@ -98,9 +98,9 @@ static void enter_phase(progress *p, ag_phase phase, double fraction, double now
     p->phase_begun_at = fraction;
 }
 
-/* Seconds until all is written, of all pictures; -1: not known yet. A phase that is under way tells by its own pace how
- * long it will take; one that is yet to come takes as long as it did in the pictures before or, in the first, its usual
- * share of the time that is known, but for the scene's reading. */
+/* Returns the seconds until all pictures are written; -1: not known yet. A phase under way is taken to go on at its own
+ * pace. One yet to come takes as long as in the pictures before, or in the first picture its usual share of the time
+ * that is known, without the time to read the scene. */
 static double seconds_left(const progress *p, double fraction, double now)
 {
     const double least_seconds = 0.5, least_fraction = 0.02; /* to be known by */
@@ -109,7 +109,7 @@ static double seconds_left(const progress *p, double fraction, double now)
     const bool has_pace = done >= least_fraction && took >= least_seconds;
     double left = has_pace ? took * (1.0 - fraction) / done : 0.0, of_one = 0.0;
     usual_shares(p, shares);
-    /* how long a scene is read, for its large pictures or few words, tells nothing of what follows */
+    /* the time to read a scene, with its large pictures or little text, tells nothing of what follows */
     for (int i = AG_PHASE_LOAD + 1; i < (int)p->phase; i++) {
         known_seconds += p->phase_seconds[i];
         known_shares += shares[i];
@@ -136,7 +136,8 @@ static double seconds_left(const progress *p, double fraction, double now)
     return left + of_one * (p->frame_count > 0 ? p->frame_count - p->frame - 1 : 0);
 }
 
-/* The whole work in percent: by time, where it is known, else by usual shares. 100 only at the end. */
+/* Returns how far the whole work is in percent: by time where that is known, else by usual shares. 100 only
+ * at the end. */
 static int overall_percent(const progress *p, double fraction, double left, double now)
 {
     const bool is_last = p->frame_count == 0 || p->frame + 1 == p->frame_count;
@@ -156,7 +157,7 @@ static int overall_percent(const progress *p, double fraction, double left, doub
     return done < 99.0 ? (int)done : 99;
 }
 
-/* "1:23", or with hours. */
+/* Writes a time as "1:23", or with hours. */
 static const char *time_text(double seconds, char *out, size_t size)
 {
     const long whole = (long)(seconds + 0.5);
@@ -167,7 +168,7 @@ static const char *time_text(double seconds, char *out, size_t size)
     return out;
 }
 
-/* ", 1:23 left", or nothing. */
+/* Writes ", 1:23 left", or nothing where that is not known. */
 static const char *left_text(double seconds, char *out, size_t size)
 {
     char time[32];
@@ -201,7 +202,7 @@ static void clear_bar(progress *p)
     p->bar_is_shown = false;
 }
 
-/* Takes away all that will be drawn anew: messages stand above it. */
+/* Removes all that will be drawn anew, so that messages stand above it. */
 static void clear_all(progress *p)
 {
     if (p->watch.drawn_rows > 0)
@@ -320,7 +321,7 @@ void progress_log(void *user, ag_log_level level, const char *message)
         return;
     static const char *const prefixes[] = {"error: ", "warning: ", "", ""};
     static const char *const located[] = {": error: ", ": warning: "};
-    /* messages about a location in a file say themselves what they are */
+    /* messages about a location in a file begin with it and with their level */
     bool has_location = level <= AG_LOG_WARNING && strstr(message, located[level]) != NULL;
     begin_writing(p);
     clear_all(p);

@@ -13,7 +13,7 @@ typedef struct shared_bytes {
     unsigned *living; /* borrowed: how many of its kind there are; or NULL */
 } shared_bytes;
 
-/* Takes the bytes over, on failure too; one holder. NULL: no memory. */
+/* Makes shared bytes with one holder of bytes that it takes over, on failure too. NULL: no memory. */
 shared_bytes *shared_bytes_take(unsigned char *bytes, size_t size, unsigned *living);
 shared_bytes *shared_bytes_hold(shared_bytes *shared);
 void shared_bytes_drop(shared_bytes *shared); /* NULL is fine */

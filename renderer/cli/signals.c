@@ -24,7 +24,7 @@ static _Atomic(double) deadline = INFINITY; /* in seconds of passes_seconds() */
 static atomic_bool is_time_up;
 
 static volatile sig_atomic_t resets_terminal, ends_sixels;
-/* Of the thread that draws and of the handler of SIGTSTP, which may run on any thread. */
+/* Shared by the thread that draws and the handler of SIGTSTP, which may run on any thread. */
 static atomic_int drawing_state;
 static atomic_bool was_stopped;
 enum {
@@ -80,7 +80,7 @@ static void leave_terminal(void)
     terminal_query_forget();
 }
 
-/* The state before. */
+/* Changes the state, and returns the one before. */
 static int change_drawing_state(const int next[DRAWING_STATES])
 {
     int state = atomic_load(&drawing_state);
@@ -123,7 +123,7 @@ void signals_reset_terminal(bool has_sixels)
     struct sigaction before, action = {.sa_handler = on_terminal_stop, .sa_flags = SA_RESTART};
     ends_sixels = has_sixels;
     resets_terminal = 1;
-    /* a shell without job control has it ignored */
+    /* where a shell without job control has set the signal to be ignored, it stays so */
     if (sigaction(SIGTSTP, NULL, &before) == 0 && before.sa_handler != SIG_IGN)
         sigaction(SIGTSTP, &action, NULL);
 }
@@ -219,7 +219,7 @@ void signals_catch(ag_context *context)
     signalled_context = context;
     for (size_t i = 0; i < sizeof STOPPING / sizeof *STOPPING; i++) {
         struct sigaction before, action = {.sa_handler = on_stop, .sa_flags = SA_RESTART};
-        /* what nohup or a shell's & have set to be ignored stays so */
+        /* signals that nohup or a shell's & have set to be ignored stay so */
         if (sigaction(STOPPING[i], NULL, &before) == 0 && before.sa_handler != SIG_IGN)
             sigaction(STOPPING[i], &action, NULL);
     }

@@ -9,7 +9,8 @@
 
 #include <stdbool.h>
 
-/* A library that aborts, since it cannot have threads or memory, ends the program with 3 and a message. */
+/* From now on a library that aborts because it gets no threads or memory ends the program with exit code 3 and a
+ * message. */
 void signals_catch_abort(void);
 
 /* From now on a signal that ends the process at once, or stops it (SIGTSTP, as Ctrl-Z sends it), ends what is drawn by
@@ -21,8 +22,9 @@ void signals_reset_terminal(bool has_sixels);
  * waits while the process is being stopped. To be called by one thread at a time. */
 void signals_begin_drawing(void);
 void signals_end_drawing(void);
-/* Whether the process was stopped by SIGTSTP since this was called last: others may have written to the terminal. To be
- * called while drawing, when no stop but by a second SIGTSTP can come between the answer and what is drawn. */
+/* Returns whether the process was stopped by SIGTSTP since the last call, so that others may have written to the
+ * terminal. To be called while drawing, when only a second SIGTSTP can stop the process between the answer and what is
+ * drawn. */
 bool signals_take_stopped(void);
 
 /* The first SIGINT, SIGTERM, SIGHUP or SIGXCPU (a soft limit of CPU time) lets the work end in order: rendering pauses,
@@ -35,15 +37,15 @@ void signals_release(void);
 void signals_begin_rendering(void);
 void signals_end_rendering(void);
 
-/* The number of the signal to stop, 0: none so far. */
+/* Returns the number of the signal to stop, 0: none so far. */
 int signals_stop(void);
-/* Whether SIGUSR1 asked for a snapshot since this was called last. */
+/* Returns whether SIGUSR1 asked for a snapshot since the last call. */
 bool signals_take_snapshot(void);
 
 /* Pauses the rendering after so many seconds (at least a millisecond); INFINITY: never. */
 void signals_set_timer(double seconds);
 
-/* The time is up at this moment, in seconds of passes_seconds(): rendering pauses then, all else is cancelled, as by a
+/* Sets when the time is up, in seconds of passes_seconds(): rendering pauses then, all else is cancelled, as by a
  * signal to stop. INFINITY: never. signals_catch forgets that it was up. */
 void signals_set_deadline(double at);
 bool signals_is_time_up(void);

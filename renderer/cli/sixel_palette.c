@@ -13,7 +13,7 @@ typedef struct shade {
     uint32_t key, count;
 } shade;
 
-/* Shades that one colour stands for. */
+/* The shades that one colour of the palette stands for. */
 typedef struct box {
     size_t begin, end;
     double mean[3];
@@ -92,7 +92,7 @@ static int widest(const box *b)
     return found;
 }
 
-/* The box is parted at its mean; false: its shades are one, but for rounding. */
+/* Parts a box at its mean. Returns false where its shades are one, but for rounding. */
 static bool part(shade *shades, box *b, box *out_upper)
 {
     const int channel = widest(b);

@@ -13,9 +13,9 @@ typedef struct sixel_palette {
     int count;
 } sixel_palette;
 
-/* At most color_count colours, 1 to 256, for the pixels: RGB, of which [0, 1] is shown. Where the picture has no more
- * in per cent they are its own; else boxes of colours are parted at their means, the one with the largest squared error
- * first. out_indices: one for each pixel. False: there is no memory. */
+/* Finds at most color_count colours, 1 to 256, for the pixels: RGB, of which [0, 1] is shown. Where the picture has no
+ * more colours, counted in whole per cent, they are its own; else boxes of colours are parted at their means, the one
+ * with the largest squared error first. out_indices: one for each pixel. Returns false where there is no memory. */
 bool sixel_palette_make(const float *pixels, size_t pixel_count, int color_count, sixel_palette *out,
                         unsigned char *out_indices);
 

@@ -13,18 +13,18 @@ typedef struct terminal_size {
     int columns, rows, cell_width, cell_height;
 } terminal_size;
 
-/* Why no picture can be shown there, NULL: one can. */
+/* Returns why no picture can be shown there, NULL: one can. */
 const char *terminal_picture_obstacle(int descriptor);
-/* False where it is not known, or too small for a picture. */
+/* Finds the terminal's size. Returns false where it is not known, or too small for a picture. */
 bool terminal_picture_room(int descriptor, terminal_size *out_size);
 
-/* The picture's size in half blocks, or in pixels by sixels, of which the size of a character must be known: no larger
- * than it is, nor than a terminal whose last column and last two rows stay free. */
+/* Computes the picture's size in half blocks, or for sixels in pixels, for which the size of a character must be known.
+ * It is at most the picture's own, and leaves the terminal's last column and last two rows free. */
 void terminal_picture_fit(int width, int height, const terminal_size *terminal, bool is_by_sixels, int *out_width,
                           int *out_height);
 
-/* Means of the pixels under each half block or sixel; pixels: RGB, top row first. out_means: 3 * out_width *
- * out_height. */
+/* Computes the means of the pixels under each half block or sixel; pixels: RGB, top row first. out_means: 3 * out_width
+ * * out_height. */
 void terminal_picture_reduce(const float *pixels, int width, int height, float *out_means, int out_width,
                              int out_height);
 
@@ -38,7 +38,7 @@ int terminal_picture_write(FILE *file, const float *shown, int width, int height
 int terminal_picture_write_sixels(FILE *file, const float *shown, int width, int height, const terminal_size *terminal,
                                   int color_count, int drawn_rows);
 
-/* The codes that take rows above the cursor's line away, and what stands on the line. */
+/* Writes the codes that remove rows above the cursor's line, and what stands on that line. */
 void terminal_picture_erase(FILE *file, int rows);
 
 #endif

@@ -31,7 +31,7 @@ typedef struct sequence {
     int count;
 } sequence;
 
-/* The first whole sequence; NULL: there is none, else what stands behind it. */
+/* Finds the first whole sequence. Returns what stands behind it; NULL: there is none. */
 static const char *next_sequence(const char *at, const char *end, sequence *out)
 {
     for (; (at = memchr(at, '\033', (size_t)(end - at))); at++) {
@@ -75,7 +75,7 @@ static void learn(const sequence *s, terminal_abilities *out)
     }
 }
 
-/* Waits for POLLIN or POLLOUT. False: it has not come in that time, or never will. */
+/* Waits for POLLIN or POLLOUT. Returns false where it has not come in that time, or never will. */
 static bool is_ready(int terminal, short event, double until)
 {
     struct pollfd asked = {.fd = terminal, .events = event};
@@ -83,7 +83,7 @@ static bool is_ready(int terminal, short event, double until)
     return poll(&asked, 1, left > 0.0 ? (int)(left * 1e3) + 1 : 0) == 1 && (asked.revents & event);
 }
 
-/* False: not all of it, since the terminal takes nothing. */
+/* Writes a text to the terminal. Returns false where the terminal did not take all of it. */
 static bool write_all(int terminal, const char *text, double until)
 {
     size_t left = strlen(text);
@@ -99,7 +99,7 @@ static bool write_all(int terminal, const char *text, double until)
     return true;
 }
 
-/* Asks, and learns from the answers until the terminal has told its kind. False: it has not. */
+/* Asks, and reads the answers until the terminal has told its kind. Returns false where it has not. */
 static bool ask(int terminal, const char *question, double until, terminal_abilities *out)
 {
     char got[ANSWER_MOST];
@@ -122,7 +122,7 @@ static bool ask(int terminal, const char *question, double until, terminal_abili
     return false;
 }
 
-/* The terminal is one that gives each byte as it comes, and shows none of them. */
+/* Sets the terminal to give each byte as it comes, and to show none of them. */
 static bool ask_all(int terminal, terminal_abilities *out)
 {
     const double until = passes_seconds() + PATIENCE_SECONDS;

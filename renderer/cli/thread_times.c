@@ -10,7 +10,7 @@
 
 int thread_times_self(void) { return (int)gettid(); }
 
-/* A thread's line: its number, its name in brackets, which may hold any character, and behind that 50 numbers, of which
+/* Parses a thread's line: its number, its name in brackets, which may hold any character, and then 50 numbers, of which
  * the 12th and 13th are ticks in user and kernel mode. */
 static int read_task(int self, const char *task, thread_time *out)
 {

@@ -12,7 +12,8 @@ typedef struct thread_time {
 
 /* Notes that the calling thread is the one that the program runs on. */
 int thread_times_self(void);
-/* The workers' times, by their numbers; how many there are. self: what thread_times_self gave there. */
+/* Finds the workers' times, by their numbers, and returns how many there are. self: what thread_times_self
+ * gave there. */
 int thread_times_read(int self, thread_time out_times[THREAD_TIMES_MOST]);
 
 #endif

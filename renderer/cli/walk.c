@@ -9,10 +9,10 @@
 #include <math.h>
 #include <stdio.h>
 
-/* After a move a coarse picture comes first, of so many times fewer pixels in width and height, where that is worth it:
- * whoever walks sees where he is. */
+/* After a move a coarse picture comes first, where that is worth it, with so many times fewer pixels in width and
+ * height: it shows at once where the move has led. */
 enum { REDUCTION = 4, WORTHWHILE_PIXELS = 1 << 15 };
-/* A pass takes about so long, so that layers and counters follow. */
+/* The seconds that a pass takes, about, so that layers and counters follow. */
 static const double PASS_SECONDS = 1.0;
 
 page_notes walk_notes(ag_rendering *rendering, page_mode mode, int samples_most)
@@ -37,7 +37,7 @@ typedef struct walk_state {
     bool is_done;
 } walk_state;
 
-/* The place is as it was asked for, rather than as it is worked out again of the camera. */
+/* Keeps the place as it was asked for, since the one computed back from the camera is rounded. */
 static page_notes notes_of(const walk *w, const walk_state *s)
 {
     page_notes n = walk_notes(s->view, PAGE_WALKING, w->samples_most);
@@ -45,7 +45,7 @@ static page_notes notes_of(const walk *w, const walk_state *s)
     return n;
 }
 
-/* Goes to a place. One that makes no sense is told of in the log, and is stayed away from. */
+/* Goes to a place. Where the place makes no sense, says so in the log and stays. */
 static ag_status go(const walk *w, const page_place *place, bool is_coarse, walk_state *s)
 {
     ag_rendering *next = NULL;
@@ -66,7 +66,7 @@ static ag_status go(const walk *w, const page_place *place, bool is_coarse, walk
     return status;
 }
 
-/* The coarse picture is there: the whole one is begun. */
+/* Begins the whole picture, once the coarse one is there. */
 static ag_status go_on(const walk *w, walk_state *s)
 {
     const page_place place = s->place;
@@ -94,14 +94,14 @@ static ag_status refine(const walk *w, walk_state *s)
     return AG_OK;
 }
 
-/* Whether a walk is over without anything to keep. */
+/* Returns whether a walk is over without anything to keep. */
 static bool is_over(const walk *w, page_wishes *wishes)
 {
     return signals_stop() || page_wishes_take_return(wishes) || passes_seconds() >= w->o->deadline ||
            !page_wishes_is_watched(wishes, PAGE_PATIENCE_SECONDS);
 }
 
-/* Whether to stop, with samples that can be kept. */
+/* Returns whether to stop, with samples that can be kept. */
 static bool is_kept(page_wishes *wishes, walk_state *s)
 {
     return s->view && !s->is_coarse && page_wishes_has_end(wishes) &&
