@@ -45,7 +45,7 @@ static void default_axes(const frame *world_from_upright, double axes[3][3])
     cross(axes[0], axes[2], axes[1]);
 }
 
-/* How far from the centre to stand so that all corners of the bounds are seen; 0 where they are one point. */
+/* Returns how far from the centre the camera has to be to see all corners of the bounds; 0 where they are one point. */
 static double distance_to_see(double axes[3][3], const double half[3])
 {
     double distance = 0.0;
@@ -95,7 +95,7 @@ ag_status import_add_default_camera(scene *s, log_sink *log)
     return AG_OK;
 }
 
-/* The way of the sun's light. */
+/* The direction in which the sun's light goes. */
 static vec3 sun_direction(const scene *s)
 {
     double axes[3][3], way[3] = {0.0, 0.0, 0.0};

@@ -11,7 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* RGB of what was read; NULL when out of memory. */
+/* Returns the RGB of what was read; NULL when out of memory. */
 static rgb *rgb_pixels(const image *picture)
 {
     size_t count = (size_t)picture->width * (size_t)picture->height, channels = (size_t)picture->channel_count;
@@ -23,7 +23,8 @@ static rgb *rgb_pixels(const image *picture)
     return pixels;
 }
 
-/* Makes what is negative or not finite 0, before the matrix may make it anything else; gives the number of pixels. */
+/* Sets to 0 what is negative or not finite, before the matrix could mix it into other channels; returns how many pixels
+ * had any, and converts all of them. */
 static size_t clean_pixels(const image_colors *colors, rgb *pixels, size_t count)
 {
     size_t bad_count = 0;
@@ -42,7 +43,7 @@ static size_t clean_pixels(const image_colors *colors, rgb *pixels, size_t count
     return bad_count;
 }
 
-/* Puts what could not be done before the reason. */
+/* Writes the message: what could not be done, then the reason. */
 static ag_status describe_failure(ag_status status, const char *name, const char *reason, char *message,
                                   size_t message_size)
 {
@@ -52,7 +53,7 @@ static ag_status describe_failure(ag_status status, const char *name, const char
     return status;
 }
 
-/* path: by which the config's rules know it. Takes the picture. */
+/* Converts a picture that was read, and takes it. path: by which the config's file rules know it. */
 static ag_status take(const scene *s, const char *name, const char *path, image picture, bool is_gray,
                       light_picture *out_picture, char *message, size_t message_size)
 {

@@ -17,15 +17,15 @@ typedef struct light_picture {
     size_t bad_count;         /* of them, that were not so in the file, and are 0 in what was wrong */
 } light_picture;
 
-/* name: what messages call the picture of that path. run: whose inputs say what may be read, and which ends reading;
- * may be NULL. is_gray: its values are no colours. Errors: AG_ERROR_COLOR, AG_ERROR_INPUT, AG_ERROR_SYSTEM,
+/* Reads the picture of that path, which messages call name. run: whose inputs say what may be read, and which ends
+ * reading; may be NULL. is_gray: its values are no colours. Errors: AG_ERROR_COLOR, AG_ERROR_INPUT, AG_ERROR_SYSTEM,
  * AG_ERROR_SCENE (too large), with the reason in message; AG_ERROR_MEMORY, AG_CANCELLED. */
 ag_status light_picture_read(const run_context *run, const scene *s, const char *name, const char *path, bool is_gray,
                              light_picture *out_picture, char *message, size_t message_size);
 
 struct image;
 
-/* light_picture_read of floats in memory, which are taken, on failure too. */
+/* Works as light_picture_read, on floats in memory, which are taken, on failure too. */
 ag_status light_picture_take(const scene *s, const char *name, struct image *pixels, bool is_gray,
                              light_picture *out_picture, char *message, size_t message_size);
 

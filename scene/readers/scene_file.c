@@ -54,7 +54,7 @@ static ag_status find_reader(const run_context *run, const char *path, scene_rea
     return AG_OK;
 }
 
-/* Does what is asked for beyond what the file says. */
+/* Applies what the user asks for beyond what the file says. */
 static ag_status finish(run_context *run, const char *path, bool is_pbrt, scene *out_scene)
 {
     if (out_scene->request)

@@ -5,12 +5,12 @@
 
 #include <string.h>
 
-/* An accessor without bytes is all zeros, and so may be of any size: no more than this. */
+/* The largest accessor without bytes: it is all zeros, and a file could give it any size. */
 static const uint32_t MAX_ZEROS = (uint32_t)1 << 24;
 
 typedef enum component_type { INT8 = 5120, UINT8, INT16, UINT16, UINT32 = 5125, FLOAT32 } component_type;
 
-/* The size in bytes; 0: there is no such type. */
+/* Returns the size in bytes of a component type; 0: there is no such type. */
 static size_t component_size(int type)
 {
     switch (type) {
@@ -24,7 +24,7 @@ static size_t component_size(int type)
     }
 }
 
-/* 0: there is no such type. */
+/* Returns the number of components of a type; 0: there is no such type. */
 static int component_count(const char *type)
 {
     static const struct {
@@ -37,7 +37,7 @@ static int component_count(const char *type)
     return 0;
 }
 
-/* The machine is little-endian, as the format is. */
+/* Reads a component from its bytes, in the machine's order: both it and the format are little-endian. */
 static float read_component(const unsigned char *bytes, int type, bool is_normalized)
 {
     int8_t i8;
@@ -78,7 +78,7 @@ static ag_status read_component_type(const gltf_reader *r, const gltf_value *at,
     return AG_OK;
 }
 
-/* Values that replace others, by rising indices. */
+/* The values of a sparse accessor, which replace others, by rising indices. */
 static ag_status open_sparse(gltf_reader *r, const gltf_value *accessor, gltf_accessor *a)
 {
     gltf_value sparse, indices, values;
@@ -151,7 +151,7 @@ ag_status gltf_accessor_open(gltf_reader *r, const gltf_value *at, uint32_t inde
     return open_sparse(r, &accessor, a);
 }
 
-/* The bytes of element i; NULL: zeros. */
+/* Returns the bytes of element i; NULL: it is zeros. */
 static const unsigned char *element_at(const gltf_accessor *a, uint32_t i)
 {
     size_t index_size = component_size(a->sparse_index_type);

@@ -12,7 +12,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-/* The first size bytes of a file. */
+/* Reads the first size bytes of a file. */
 static ag_status read_file(const gltf_reader *r, const gltf_value *uri, const char *path, uint64_t size, gltf_file *out)
 {
     struct stat status;

@@ -25,7 +25,8 @@ bool gltf_matrix_axis(const gltf_matrix *m, int axis, double out_axis[3])
     return true;
 }
 
-/* The node's position and turn without its scale; a mirror stays one. Ours looks along +z. */
+/* Makes the camera's transform of the node's position and rotation, without its scale; a mirror stays one. Our cameras
+ * look along +z. */
 static bool place_camera(const gltf_matrix *node, transform *out_world_from_camera)
 {
     double x[3], y[3], z[3], m[4][4] = {{0.0}}, along = 0.0, square = 0.0, side = 0.0;
@@ -72,7 +73,7 @@ static ag_status read_perspective(gltf_reader *r, const gltf_value *at, camera *
     return AG_OK;
 }
 
-/* An orthographic picture shows all within xmag and ymag of the middle, however far away. */
+/* An orthographic camera shows all within xmag and ymag of the middle, however far away. */
 static ag_status read_orthographic(gltf_reader *r, const gltf_value *at, camera *c)
 {
     double half[2] = {0.0, 0.0};

@@ -12,7 +12,8 @@
 
 /* Syntax */
 
-/* The line around a position and a mark below it, as messages of other scene files have them. Long lines are cut. */
+/* Writes the line around a position and a mark below it, as messages of other scene files have them. Long lines are
+ * cut. */
 static void make_excerpt(const char *json, size_t size, size_t position, char *excerpt, size_t excerpt_size)
 {
     enum { BEFORE = 60, SHOWN = 100 };
@@ -131,7 +132,8 @@ static ag_status check_asset(gltf_reader *r)
 
 typedef enum extension_support { NOT_KNOWN, IGNORED, KNOWN } extension_support;
 
-/* IGNORED: the picture can go without, though it looks different; said where the extension is used. */
+/* IGNORED: the picture can be made without the extension, though it looks different; a warning names it where it is
+ * used. */
 static extension_support find_extension(const char *name)
 {
     static const struct {

@@ -23,7 +23,7 @@ static ag_status load_from_file(gltf_reader *r, const gltf_value *uri, const cha
     return status;
 }
 
-/* A data URI's bytes, decoded once. */
+/* Decodes a data URI's bytes, once. */
 static ag_status decode_uri(gltf_reader *r, uint32_t index, const gltf_value *uri, const char *text,
                             gltf_bytes *out_bytes)
 {

@@ -4,10 +4,10 @@
  * Flow: gltf_nodes -> [here] -> gltf_poses, gltf_meshes, scene.instances. Threads: one per scene. */
 #include "gltf/gltf_private.h"
 
-/* Triangles that all copies of a mesh may have together. */
+/* The most triangles that all copies of a mesh may have together. */
 static const double MAX_COPIED_TRIANGLES = 65536.0;
 
-/* A guess, for what is wrong with the mesh is told when it is read. */
+/* Guesses how many triangles a mesh has; what is wrong with it is told when it is read. */
 static double triangle_count(const gltf_reader *r, uint32_t mesh_index)
 {
     const json_t *primitives = json_object_get(json_array_get(r->lists[GLTF_MESHES].json, mesh_index), "primitives");
@@ -24,7 +24,7 @@ static double triangle_count(const gltf_reader *r, uint32_t mesh_index)
     return count / 3.0;
 }
 
-/* The node's mesh, if it is as other nodes have it but for its transform; else GLTF_NONE. */
+/* Finds the node's mesh if other nodes can have the same but for its transform; else GLTF_NONE. */
 static ag_status find_shared_mesh(const gltf_reader *r, const gltf_value *node, uint32_t *out_mesh_index)
 {
     *out_mesh_index = GLTF_NONE;
@@ -55,7 +55,7 @@ static ag_status add_posed(gltf_reader *r, const gltf_value *node, uint32_t mesh
     return status;
 }
 
-/* The mesh as it is by itself becomes an object, but for what shines. */
+/* Makes an object of the mesh without a node's transform, but leaves out the parts that shine. */
 static ag_status make_object(gltf_reader *r, const gltf_value *node, uint32_t mesh_index, gltf_mesh_use *use)
 {
     gltf_matrix identity = gltf_matrix_identity();
@@ -88,7 +88,7 @@ static ag_status add_node_mesh(gltf_reader *r, const gltf_value *node, uint32_t 
     return add_posed(r, node, mesh_index, world_from_node, shining);
 }
 
-/* The name that the file gives it, or NULL. */
+/* Returns the name that the file gives it, or NULL. */
 static const char *name_of(const gltf_value *item) { return json_string_value(gltf_member(item, "name").json); }
 
 ag_status gltf_add_node_mesh(gltf_reader *r, const gltf_value *node, uint32_t mesh_index,

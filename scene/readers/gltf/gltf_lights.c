@@ -52,7 +52,7 @@ gltf_lamp_units gltf_lamp_units_of(gltf_light_units asked, const char *generator
     return units;
 }
 
-/* Once, where the first lamp is. */
+/* Says in the log, once, where the first lamp is, which units were taken. */
 static void tell_units(gltf_reader *r)
 {
     static const char *const UNITS[] = {

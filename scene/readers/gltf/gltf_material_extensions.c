@@ -50,8 +50,9 @@ static ag_status read_transmission(gltf_reader *r, const gltf_value *at, const g
     return gltf_get_texture(r, extension, "transmissionTexture", RED, &out->uv_set, &m->transmission_texture);
 }
 
-/* Of which that share is left after that distance in the world, as the format has it. Blender's exporter writes the
- * colour and 1 / density of a Volume Absorption as they stand, and Cycles absorbs (1 - colour) density. */
+/* Computes an absorption by which that share of light is left after that distance in the world, as the format has it.
+ * Blender's exporter writes the colour and 1 / density of a Volume Absorption as they stand, and Cycles absorbs (1 -
+ * colour) density. */
 static float absorption(const gltf_reader *r, float share, double distance)
 {
     double depth = r->is_blenders ? fmax(1.0 - (double)share, 0.0) : -log(fmax((double)share, 1e-6));
@@ -66,7 +67,7 @@ static void tell_absorption(const gltf_reader *r)
                     "exporter writes as it stands; the format itself means -ln(colour) / distance");
 }
 
-/* How thick it is, the mesh says better than the factor: only whether there is a volume is read from that. */
+/* Reads from the thickness only whether there is a volume: how thick it is, the mesh tells better than the factor. */
 static ag_status read_volume(gltf_reader *r, const gltf_value *at, const gltf_value *extension, material *m,
                              gltf_material *out)
 {
@@ -165,7 +166,7 @@ static ag_status read_specular_glossiness(gltf_reader *r, const gltf_value *at, 
     return gltf_get_texture(r, extension, "specularGlossinessTexture", roughness, &out->uv_set, &m->roughness_texture);
 }
 
-/* Shown as it is whatever light falls on it: it shines with its colour and reflects nothing. */
+/* An unlit material looks alike whatever light falls on it: it shines with its colour and reflects nothing. */
 static ag_status read_unlit(gltf_reader *r, const gltf_value *at, const gltf_value *extension, material *m,
                             gltf_material *out)
 {
@@ -182,7 +183,7 @@ static ag_status read_unlit(gltf_reader *r, const gltf_value *at, const gltf_val
     return AG_OK;
 }
 
-/* Extensions that the picture can go without are named in a warning. */
+/* Warns of extensions that are not supported, and without which the picture can be made. */
 static void warn_others(const gltf_reader *r, const gltf_value *extensions, const char *name)
 {
     static const char *const OTHERS[] = {"KHR_materials_diffuse_transmission", "KHR_materials_dispersion",

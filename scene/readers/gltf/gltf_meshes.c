@@ -58,7 +58,7 @@ static bool has_area(const mesh *m, const uint32_t *corners)
     return u[1] * v[2] - u[2] * v[1] != 0.0 || u[2] * v[0] - u[0] * v[2] != 0.0 || u[0] * v[1] - u[1] * v[0] != 0.0;
 }
 
-/* Triangles without area cannot be seen, nor sampled. */
+/* Removes triangles without area, which can be neither seen nor sampled. */
 static void drop_degenerate(gltf_reader *r, bool is_strip, mesh *m)
 {
     uint32_t kept = 0;
@@ -80,7 +80,7 @@ static void free_arrays(mesh *m)
     free(m->indices);
 }
 
-/* The mesh's arrays become the scene's. */
+/* Gives the mesh's arrays to the scene. */
 static ag_status add_shape(gltf_reader *r, const mesh *m, bool is_mirror, const gltf_material *from,
                            uint32_t object_index)
 {

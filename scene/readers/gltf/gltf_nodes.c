@@ -94,7 +94,8 @@ static uint32_t step(const gltf_reader *r, tree *t)
     return node;
 }
 
-/* Who has one parent at most, and is not below a node without one, is among its own ancestors or below such a node. */
+/* Refuses cycles. A node that has at most one parent, and is not below a node without a parent, is among its own
+ * ancestors or below such a node. */
 static ag_status refuse_cycle(const gltf_reader *r, const tree *t)
 {
     for (uint32_t i = 0; i < t->node_count; i++) {
@@ -109,7 +110,7 @@ static ag_status refuse_cycle(const gltf_reader *r, const tree *t)
     return AG_ERROR_SCENE;
 }
 
-/* All nodes, those of other scenes too: a skin's joints may be anywhere. */
+/* Computes the transforms of all nodes, also those of other scenes, where a skin's joints may be. */
 static ag_status place_nodes(gltf_reader *r, tree *t)
 {
     uint32_t visited = 0;
@@ -130,7 +131,7 @@ static ag_status place_nodes(gltf_reader *r, tree *t)
     return visited == t->node_count ? AG_OK : refuse_cycle(r, t);
 }
 
-/* The scene's roots, or where the file has no scene all nodes without a parent, are on the stack afterwards. */
+/* Puts the scene's roots on the stack, or where the file has no scene all nodes without a parent. */
 static ag_status push_roots(gltf_reader *r, tree *t)
 {
     uint32_t scene_index = 0;

@@ -20,7 +20,7 @@ gltf_matrix gltf_matrix_multiply(const gltf_matrix *a, const gltf_matrix *b)
     return c;
 }
 
-/* The node's, or where it has none the mesh's. */
+/* Finds the weights of morph targets: the node's, or where it has none the mesh's. */
 static ag_status read_weights(const gltf_reader *r, const gltf_value *node, const gltf_value *mesh_value,
                               gltf_value *out_weights)
 {

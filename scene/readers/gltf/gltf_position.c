@@ -10,7 +10,7 @@
 
 static const char *skip_blanks(const char *c) { return c + strspn(c, " \t\r\n"); }
 
-/* c: at the quote that a string begins with. */
+/* Returns what stands behind a string; c: at the quote that it begins with. */
 static const char *skip_string(const char *c)
 {
     for (c++; *c && *c != '"'; c++)
@@ -41,7 +41,7 @@ static const char *skip_value(const char *c)
     return c;
 }
 
-/* The next item of an array or object, behind one that ends at c; NULL: there is none. */
+/* Returns the next item of an array or object, behind one that ends at c; NULL: there is none. */
 static const char *next_item(const char *c)
 {
     c = skip_blanks(c);
@@ -54,7 +54,8 @@ static const char *first_item(const char *c)
     return *c && *c != '}' && *c != ']' ? c : NULL;
 }
 
-/* The last member of that name counts, as it does to jansson. Keys with escapes are not found. */
+/* Finds a member by its name. The last one of that name counts, as it does to jansson. Keys with escapes are
+ * not found. */
 static const char *find_member(const char *object, const char *key)
 {
     const size_t length = strlen(key);
@@ -81,7 +82,7 @@ static const char *find_element(const char *array, size_t index)
     return c;
 }
 
-/* The value, or what it is missing from. */
+/* Finds where the value stands, or where that stands from which it is missing. */
 static const char *find_value(const char *text, const gltf_value *v)
 {
     if (!v->parent)

@@ -14,7 +14,7 @@
 
 enum { GLTF_MAX_FACTORS = 4 };
 
-/* Vertices lie within +-this, in world space, as those of other formats. */
+/* Coordinates of vertices in world space are at most this, as in other formats. */
 #define GLTF_MAX_COORDINATE 1e18
 
 /* A value of the document and its path: a chain of keys and indices up to the document, in the callers' frames. json is
@@ -118,55 +118,57 @@ typedef struct gltf_reader {
     uint32_t glow_count; /* of the scene's lights: surfaces that only glow */
 } gltf_reader;
 
-/* gltf_position.c: line and column of a value; of one that is missing, those of what it is missing from. Of a binary
- * file, the file alone. */
+/* gltf_position.c: finds the line and column of a value; for one that is missing, those of the value that should hold
+ * it. For a binary file, it gives the file alone. */
 file_location gltf_position(const gltf_reader *r, const gltf_value *v);
 
 /* gltf_json.c: values by key and index. Each function that fails tells the error with the value's path. */
 
-/* Always AG_ERROR_SCENE. */
+/* Tells an error at the value's path. Always returns AG_ERROR_SCENE. */
 ag_status gltf_error(const gltf_reader *r, const gltf_value *at, const char *format, ...) AG_PRINTF(3, 4);
-/* At the value's path, once for each key. */
+/* Warns at the value's path, once for each key. */
 void gltf_warn_once(const gltf_reader *r, const gltf_value *at, const char *key, const char *format, ...)
     AG_PRINTF(4, 5);
 
-/* json is NULL where there is none, also where the parent is none or no object or array. */
+/* Return a member or an element; its json is NULL where there is none, also where the parent is none, or is no object
+ * or array. */
 gltf_value gltf_member(const gltf_value *object, const char *key);
 gltf_value gltf_element(const gltf_value *array, size_t index);
 
 /* Finds a member, which must be an object (array) if it is present. */
 ag_status gltf_get_object(const gltf_reader *r, const gltf_value *parent, const char *key, gltf_value *out_value);
 ag_status gltf_get_array(const gltf_reader *r, const gltf_value *parent, const char *key, gltf_value *out_value);
-/* extensions.NAME; extensions_frame takes the step between, and lives as long as the value. */
+/* Returns the value extensions.NAME; extensions_frame is room for the step between, and has to live as long as the
+ * value. */
 ag_status gltf_get_extension(const gltf_reader *r, const gltf_value *parent, const char *name,
                              gltf_value *extensions_frame, gltf_value *out_value);
-/* An element, or an item of a list, which must be an object; index is in range. */
+/* Finds an element, or an item of a list, which must be an object; index is in range. */
 ag_status gltf_get_element(const gltf_reader *r, const gltf_value *array, size_t index, gltf_value *out_value);
 ag_status gltf_get_item(const gltf_reader *r, gltf_list list, uint32_t index, gltf_value *out_value);
 
 /* Each writes the value where there is one, and leaves *value alone where there is none. */
 ag_status gltf_get_bool(const gltf_reader *r, const gltf_value *parent, const char *key, bool *value);
 ag_status gltf_get_text(const gltf_reader *r, const gltf_value *parent, const char *key, const char **value);
-/* An integer in [0, 2^53]. */
+/* Gets an integer in [0, 2^53]. */
 ag_status gltf_get_uint(const gltf_reader *r, const gltf_value *parent, const char *key, uint64_t *value);
 ag_status gltf_get_double(const gltf_reader *r, const gltf_value *parent, const char *key, double *value);
-/* Exactly count numbers. */
+/* Gets exactly count numbers. */
 ag_status gltf_get_doubles(const gltf_reader *r, const gltf_value *parent, const char *key, size_t count,
                            double *values);
-/* A number (count of them, up to GLTF_MAX_FACTORS; three) that the format wants in [low, high]: brought there, with a
- * warning, where it is not. */
+/* Get a number (or count of them, up to GLTF_MAX_FACTORS, or three) that the format wants in [low, high]. One that is
+ * not is brought there, with a warning. */
 ag_status gltf_get_clamped(const gltf_reader *r, const gltf_value *parent, const char *key, double low, double high,
                            float *value);
 ag_status gltf_get_factors(const gltf_reader *r, const gltf_value *parent, const char *key, double low, double high,
                            size_t count, float *values);
 ag_status gltf_get_color(const gltf_reader *r, const gltf_value *parent, const char *key, double low, double high,
                          rgb *value);
-/* An index into a list, which is checked. */
+/* Gets an index into a list, and checks it. */
 ag_status gltf_get_index(const gltf_reader *r, const gltf_value *parent, const char *key, gltf_list list,
                          uint32_t *value);
-/* The value itself, at its own path, as such an index. */
+/* Takes the value itself as such an index. */
 ag_status gltf_read_index(const gltf_reader *r, const gltf_value *at, gltf_list list, uint32_t *out_index);
-/* gltf_get_… for what must be there: an error where it is not. */
+/* Work as gltf_get_… does for values that must be there: an error where one is not. */
 ag_status gltf_require(const gltf_reader *r, const gltf_value *parent, const char *key);
 
 /* gltf_document.c: reads the file, and checks what the whole of it says: version, extensions. */
@@ -174,16 +176,17 @@ ag_status gltf_document_read(gltf_reader *r, const char *path);
 
 /* gltf_uri.c */
 
-/* The bytes of a base64 data URI, malloc'ed; NULL and a text where it is none or damaged, NULL and NULL when out of
- * memory. */
+/* Decodes the bytes of a base64 data URI, malloc'ed. Returns NULL with a text where it is none or is damaged, and NULL
+ * without a text when out of memory. */
 unsigned char *gltf_uri_decode_data(const char *uri, size_t *out_size, const char **out_wrong);
 bool gltf_uri_is_data(const char *uri);
-/* The path of the file that a relative URI names, malloc'ed; as above. */
+/* Returns the path of the file that a relative URI names, malloc'ed; NULL as above. */
 char *gltf_uri_to_path(const gltf_reader *r, const char *uri, const char **out_wrong);
 
 /* gltf_buffers.c */
 ag_status gltf_buffer_view(gltf_reader *r, uint32_t index, gltf_bytes *out_bytes, uint32_t *out_stride);
-/* A part of a view, for an accessor: stride 0 in *stride becomes the view's, or where that has none element_size. */
+/* Finds a part of a view, for an accessor. Where *stride is 0 it becomes the view's stride, or element_size where the
+ * view has none. */
 ag_status gltf_view_span(gltf_reader *r, const gltf_value *at, uint64_t offset, uint64_t count, size_t element_size,
                          gltf_bytes *out_bytes, size_t *out_stride);
 
@@ -200,13 +203,13 @@ typedef struct gltf_accessor {
     int sparse_index_type;
 } gltf_accessor;
 
-/* index is checked already; at is where it stands, for the message that the accessor's type is not components_min to
- * components_max numbers. */
+/* Opens an accessor. index has been checked; at is where it stands, for the message that the accessor's elements have
+ * another number of components than components_min to components_max. */
 ag_status gltf_accessor_open(gltf_reader *r, const gltf_value *at, uint32_t index, int components_min,
                              int components_max, gltf_accessor *out_accessor);
-/* Element i < count, all components, integers normalised where it says so. */
+/* Reads element i < count, all components; integers are normalised where the accessor says so. */
 void gltf_accessor_get(const gltf_accessor *a, uint32_t i, float *out_values);
-/* An index of an accessor of unsigned integers. */
+/* Reads an index from an accessor of unsigned integers. */
 uint32_t gltf_accessor_get_index(const gltf_accessor *a, uint32_t i);
 
 /* gltf_poses.c: how a node holds its mesh. */
@@ -218,7 +221,8 @@ typedef struct gltf_pose {
     uint32_t joint_count;
 } gltf_pose;
 
-/* world_from_nodes is filled. *out_pose is to be closed, on failure too; node and mesh_value must live as long. */
+/* Opens a pose, for which world_from_nodes must be filled. *out_pose is to be closed, on failure too; node and
+ * mesh_value must live as long. */
 ag_status gltf_pose_open(gltf_reader *r, const gltf_value *node, const gltf_value *mesh_value,
                          const gltf_matrix *world_from_node, gltf_pose *out_pose);
 void gltf_pose_close(gltf_pose *pose);
@@ -281,18 +285,18 @@ typedef struct gltf_triangles {
     bool is_strip; /* triangles without area are meant to be there */
 } gltf_triangles;
 
-/* *out_triangles is to be freed; its count is 0 for points and lines, which a warning names. */
+/* Finds the corners. *out_triangles is to be freed; its count is 0 for points and lines, which a warning names. */
 ag_status gltf_read_triangles(gltf_reader *r, const gltf_value *primitive, uint32_t vertex_count,
                               gltf_triangles *out_triangles);
 
 /* gltf_materials.c, gltf_material_extensions.c. index GLTF_NONE: the default material. */
 ag_status gltf_material_find(gltf_reader *r, uint32_t index, const gltf_material **out_material);
-/* alphaMode, and the alpha of factor and texture_key in base, which is what gives the base colour. */
+/* Reads alphaMode and the alpha of the factor and of texture_key in base, the object that has the base colour. */
 ag_status gltf_read_alpha(gltf_reader *r, const gltf_value *at, const gltf_value *base, const char *texture_key,
                           float factor, gltf_material *out);
 ag_status gltf_read_material_extensions(gltf_reader *r, const gltf_value *at, material *m, gltf_material *out);
 
-/* gltf_textures.c. Of which channel, how encoded, and what is done to the value. */
+/* gltf_textures.c: which channel of a texture is read, how it is encoded, and what is done to its value. */
 typedef struct gltf_texture_use {
     bool is_color, is_srgb;
     texture_channel channel; /* of a float */
@@ -300,26 +304,26 @@ typedef struct gltf_texture_use {
     bool invert;
 } gltf_texture_use;
 
-/* The texture that parent.key, a textureInfo, refers to; left alone where there is none. *uv_set: the set that the
- * material's textures use, GLTF_NONE for none yet. */
+/* Gets the texture that parent.key, a textureInfo, refers to; it is left alone where there is none. *uv_set: the set
+ * that the material's textures use, GLTF_NONE for none yet. */
 ag_status gltf_get_texture(gltf_reader *r, const gltf_value *parent, const char *key, gltf_texture_use use,
                            uint32_t *uv_set, uint32_t *out_texture);
 
 /* gltf_images.c */
 ag_status gltf_load_image(gltf_reader *r, uint32_t index, image_encoding encoding, uint32_t *out_image_index);
 
-/* gltf_nodes.c: the default scene's nodes, and all that hangs on them. */
+/* gltf_nodes.c: reads the default scene's nodes, and what they hold. */
 ag_status gltf_add_nodes(gltf_reader *r);
 
-/* gltf_cameras.c: the camera on a node becomes the scene's if it is the one that is asked for, by its name or the
- * node's, or the first; the picture has its proportions. */
+/* gltf_cameras.c: makes the camera on a node the scene's if it is the one that is asked for, by its own name or the
+ * node's, or the first. The picture gets its proportions. */
 ag_status gltf_add_camera(gltf_reader *r, uint32_t index, const gltf_value *node, const gltf_matrix *world_from_node);
 void gltf_set_picture_size(gltf_reader *r);
-/* The node's axis, 0 to 2, of unit length; false where the node makes nothing of it. */
+/* Finds the node's axis, 0 to 2, of unit length; returns false where the node's transform makes it zero. */
 bool gltf_matrix_axis(const gltf_matrix *m, int axis, double out_axis[3]);
 
 /* gltf_lights.c */
-/* asked: what the user says of it. generator: the file's, NULL: none. */
+/* Finds the units of lamps. asked: what the user says of them. generator: the file's, NULL: none. */
 gltf_lamp_units gltf_lamp_units_of(gltf_light_units asked, const char *generator);
 ag_status gltf_add_lamp(gltf_reader *r, uint32_t index, const gltf_matrix *world_from_node);
 

@@ -14,7 +14,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The directory of a path with its slash, or "". NULL when out of memory. */
+/* Returns the directory of a path with its slash, or "". NULL when out of memory. */
 static char *directory_of(const char *path)
 {
     const char *slash = strrchr(path, '/');
@@ -39,7 +39,7 @@ static ag_status allocate_lists(gltf_reader *r)
     return r->buffers && r->images && r->materials && r->mesh_uses && r->world_from_nodes ? AG_OK : AG_ERROR_MEMORY;
 }
 
-/* Warns of what a renderer of still pictures has no use for, and of what the file forgot. */
+/* Warns of what a still picture has no use for, and of what the file lacks. */
 static ag_status end(gltf_reader *r)
 {
     gltf_value animations = gltf_member(&r->document, "animations");

@@ -33,7 +33,7 @@ static ag_status read_sampler(const gltf_reader *r, const gltf_value *texture_va
     return read_wrap(r, &sampler, "wrapT", &t->wraps.t);
 }
 
-/* glTF has v down the picture, and turns and scales there; our v goes up. */
+/* glTF's v runs down the picture, where its rotation and scale apply; our v runs up. */
 static void map_uv(const double offset[2], double rotation, const double scale[2], texture_mapping *m)
 {
     double c = cos(rotation), s = sin(rotation);

@@ -7,7 +7,7 @@
 
 enum { MODE_TRIANGLES = 4, MODE_STRIP, MODE_FAN };
 
-/* The primitive's vertices in their order. */
+/* Takes the primitive's vertices in their order. */
 typedef struct corner_list {
     gltf_accessor indices;
     bool is_indexed; /* else each vertex once */

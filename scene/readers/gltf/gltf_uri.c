@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The value of a base64 digit of either alphabet; -1: it is none. */
+/* Returns the value of a base64 digit of either alphabet; -1: it is none. */
 static int base64_value(char c)
 {
     if (c >= 'A' && c <= 'Z')
@@ -64,8 +64,8 @@ static int hexadecimal_value(char c)
                                   : -1;
 }
 
-/* A scheme: a letter, then letters, digits, + - . up to a colon, before any slash. Of more than one letter, for that
- * would be a drive. */
+/* Returns whether a URI has a scheme: a letter, then letters, digits, + - . up to a colon, before any slash. A single
+ * letter would be a drive. */
 static bool has_scheme(const char *uri)
 {
     size_t i = 0;

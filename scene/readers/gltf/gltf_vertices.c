@@ -30,7 +30,7 @@ static ag_status open_vertex_data(gltf_reader *r, const gltf_value *at, const ch
     return AG_OK;
 }
 
-/* Colours of vertices are not supported; white ones change nothing. */
+/* Warns of colours of vertices, which are not supported; white ones change nothing. */
 static ag_status warn_colors(gltf_reader *r, const gltf_value *at)
 {
     gltf_accessor colors;

@@ -21,7 +21,7 @@ typedef struct library {
     size_t count;
 } library;
 
-/* The value of an attribute in a line; false where there is none, or too long a one. */
+/* Finds the value of an attribute in a line; returns false where there is none, or too long a one. */
 static bool get_attribute(const char *line, const char *name, char *out, size_t size)
 {
     const char *at = strstr(line, name);
@@ -33,7 +33,7 @@ static bool get_attribute(const char *line, const char *name, char *out, size_t 
     return true;
 }
 
-/* The number of <NAME ...>number</NAME>. */
+/* Finds the number of <NAME ...>number</NAME>. */
 static bool get_number(const char *line, const char *name, float *out)
 {
     const char *at = strstr(line, name), *begin = at ? strchr(at, '>') : NULL;

@@ -83,7 +83,7 @@ static void read_fbx(FILE *file, unsigned char *block, reading *r)
     }
 }
 
-/* The number behind an opening tag of that name and its attributes. */
+/* Finds the number behind an opening tag of that name and its attributes; returns whether there is one. */
 static bool get_number(const char *tag, const char *name, double *out)
 {
     const size_t length = strcspn(tag, " \t\r\n>");

@@ -31,7 +31,7 @@ void assimp_write_record(assimp_writer *w, import_record_kind kind, const void *
 void assimp_write_text(assimp_writer *w, import_record_kind kind, const char *text);
 void assimp_copy_text(char *out, size_t size, const struct aiString *text); /* cut to size - 1 bytes */
 
-/* Of the node with that name; where there is none (NULL), or no name, out_world_from_node stays. */
+/* Finds the transform of the node with that name; where there is none (NULL), or no name, out_world_from_node stays. */
 const struct aiNode *assimp_find_node(const struct aiNode *node, const struct aiString *name,
                                       assimp_matrix world_from_parent, int depth, assimp_matrix out_world_from_node);
 /* w: 1 of a point, 0 of a direction. */

@@ -6,7 +6,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-/* Confines this process, and for good. Files that are open stay open. False where the kernel cannot do it. */
+/* Confines this process for good. Files that are open stay open. Returns false where the kernel cannot do it. */
 bool import_confine_process(char *const *folders, size_t count);
 
 #endif

@@ -24,7 +24,8 @@ static ag_status refuse(const run_context *run, const char *path, const char *wh
     return AG_ERROR_INPUT;
 }
 
-/* The memory that the program may take: some formats are packed, but none by more than this. */
+/* The memory that the program may take: some formats are packed, but none by more than this for each byte of
+ * the file. */
 static ag_status find_memory_limit(const run_context *run, const char *path, uint64_t *out_bytes)
 {
     const uint64_t base = UINT64_C(2) << 30, per_byte = 64;
@@ -41,7 +42,7 @@ static ag_status find_memory_limit(const run_context *run, const char *path, uin
     return AG_OK;
 }
 
-/* Gives the program's path, or NULL and where it was looked for. */
+/* Finds the program's path, or NULL and where it was looked for. */
 static const char *find_program(char *path, size_t path_size, char tried[TRIED_SIZE])
 {
     module_folders folders;

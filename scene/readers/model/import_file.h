@@ -8,8 +8,8 @@
 /* Returns whether the import program is installed; where it is not, logs at a level the paths that were tried. */
 bool import_finds_program(const run_context *run, ag_log_level level);
 
-/* Whether assimp reads files whose names end so: extension with its dot, in any case. False where the program is not
- * there. Errors: AG_ERROR_SYSTEM, AG_ERROR_INPUT (also told to the log), AG_ERROR_MEMORY, AG_CANCELLED. */
+/* Finds whether assimp reads files whose names end so: extension with its dot, in any case. False where the program is
+ * not there. Errors: AG_ERROR_SYSTEM, AG_ERROR_INPUT (also told to the log), AG_ERROR_MEMORY, AG_CANCELLED. */
 ag_status import_reads_extension(const run_context *run, const char *extension, bool *out_reads);
 
 /* Fills an empty, uncommitted scene: meshes in world space (right-handed, y up) with materials (import_material.c), the

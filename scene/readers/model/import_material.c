@@ -28,7 +28,7 @@
 
 /* Pictures */
 
-/* message is left as it is where the scene may ask. */
+/* Checks whether the scene may read the file. message is left as it is where it may. */
 static bool is_there(const importer *i, const char *path, char *message, size_t message_size)
 {
     return input_file_may_ask(i->run, path, message, message_size) && texture_image_is_there(i->run, path);
@@ -66,7 +66,7 @@ static void warn_picture(importer *i, const import_picture *p, const char *reaso
     log_at_once(i->log, AG_LOG_WARNING, i->where, key, "the picture \"%s\" is not used: %s", p->path, reason);
 }
 
-/* A file's, or one within the model's. */
+/* Reads a picture from a file, or one within the model's file. */
 static ag_status load_picture(importer *i, const import_picture *p, image_encoding encoding, uint32_t *out_image_index,
                               char *message, size_t message_size)
 {
@@ -141,7 +141,7 @@ static float clamp01(float x) { return fminf(fmaxf(x, 0.0f), 1.0f); } /* 0 for N
 
 static rgb clamp_color(rgb c) { return rgb_make(clamp01(c.r), clamp01(c.g), clamp01(c.b)); }
 
-/* A share of light, as the working space has it. */
+/* Converts a share of light to the working space. */
 static rgb share_of(const importer *i, rgb c) { return working_space_reflectance(&i->scene->space, clamp_color(c)); }
 
 static bool is_given(float x) { return x >= 0.0f && isfinite(x); }

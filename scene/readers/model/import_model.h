@@ -32,7 +32,7 @@ typedef struct import_picture {
     uint32_t wrap_s, wrap_t;     /* import_wrap */
 } import_picture;
 
-/* Words and units of MTL. Negative: the file does not say. */
+/* In the words and units of MTL. Negative: the file does not say. */
 typedef struct import_material {
     char name[IMPORT_NAME_SIZE];
     int32_t illumination;      /* MTL's illum */
@@ -51,7 +51,7 @@ typedef struct import_material {
     import_picture pictures[IMPORT_SLOT_COUNT];
 } import_material;
 
-/* Followed by vertex_count positions, then normals and uvs of which there are as many or none, then 3 * triangle_count
+/* Followed by vertex_count positions, then as many normals and as many uvs or none of either, then 3 * triangle_count
  * indices. */
 typedef struct import_mesh {
     char name[IMPORT_NAME_SIZE];

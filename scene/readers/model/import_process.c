@@ -20,7 +20,7 @@
 
 enum { LOOK_UP_EVERY_MS = 50 }; /* for cancellation */
 
-/* Waits until the process has closed its end of the pipe, which its end does. */
+/* Waits until the process has closed its end of the pipe, as it does when it ends. */
 static bool wait_for_end(const run_context *run, pid_t process, int pipe_end)
 {
     struct pollfd at = {.fd = pipe_end, .events = POLLIN};
@@ -35,7 +35,8 @@ static bool wait_for_end(const run_context *run, pid_t process, int pipe_end)
     }
 }
 
-/* AG_OK where it ended as it should. A host that ignores SIGCHLD has no exit codes: what was written then counts. */
+/* Returns AG_OK where the process ended as it should. A host that ignores SIGCHLD gets no exit codes: whether the
+ * answer is whole then decides. */
 static ag_status judge_end(pid_t process, char *message, size_t message_size)
 {
     int how = 0;
@@ -119,7 +120,7 @@ static ag_status run_process(const run_context *run, const char *program, const 
     return status != AG_OK ? status : take_answer(answer, out_answer, message, message_size);
 }
 
-/* Another number for an open file, which the new process has no other use for. -1 stays -1. */
+/* Returns another descriptor of an open file, which the new process does not use otherwise. -1 stays -1. */
 static int beyond_the_workers(int descriptor)
 {
     if (descriptor < 0 || descriptor >= IMPORT_DESCRIPTORS_END)

@@ -126,7 +126,7 @@ static ag_status index_records(model *m)
     return AG_OK;
 }
 
-/* Surfaces: materials that nothing is made of are not looked at, nor their pictures. */
+/* Materials are made only for meshes that have them; others are not looked at, nor their pictures. */
 
 static ag_status get_surface(model *m, uint32_t index, const import_surface **out_surface)
 {
@@ -236,7 +236,7 @@ static ag_status add_instance(model *m, const record *r)
     return importer_add_mesh(&m->to, head.name, &copy, &world_from_mesh, surface);
 }
 
-/* The diagonal of all instances, roughly, for heights of bumps. */
+/* Returns the diagonal of all instances, roughly, by which heights of bumps are measured. */
 static ag_status find_bump_unit(model *m)
 {
     vec3 low = {INFINITY, INFINITY, INFINITY}, high = {-INFINITY, -INFINITY, -INFINITY};

@@ -57,7 +57,8 @@ static double aspect_of(const import_camera *source)
     return source->aspect > 0.0f && isfinite(source->aspect) ? (double)source->aspect : DEFAULT_ASPECT;
 }
 
-/* The field of view across the shorter side of the picture, from that across its width; 0 where it makes no sense. */
+/* Returns the field of view across the shorter side of the picture, from that across its width; 0 where it makes no
+ * sense. */
 static double shorter_fov_degrees(const import_camera *source)
 {
     double half = 0.5 * (double)source->horizontal_fov;
@@ -143,7 +144,7 @@ static bool is_sound(rgb c)
     return rgb_is_finite(c) && c.r >= 0.0f && c.g >= 0.0f && c.b >= 0.0f && !rgb_is_black(c);
 }
 
-/* A rectangle around its position that shines to one side. */
+/* Adds a rectangle around its position that shines to one side. */
 static ag_status add_area_light(importer *i, const import_light *source, rgb intensity)
 {
     double n[3], up[3], right[3], area = (double)source->size[0] * (double)source->size[1];

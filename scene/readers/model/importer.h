@@ -7,7 +7,7 @@
 #include "model/import_model.h"
 #include "scene.h"
 
-/* World coordinates are at most this, as in pbrt files. */
+/* Coordinates in world space are at most this, as in pbrt files. */
 #define IMPORT_MAX_COORDINATE 1e18f
 
 /* A picture within the file. */
@@ -62,7 +62,7 @@ ag_status importer_add_light(importer *i, const import_light *source);
  * see), AG_ERROR_MEMORY. */
 ag_status importer_finish(importer *i);
 
-/* FILE: error: ...; gives AG_ERROR_INPUT. */
+/* Logs "FILE: error: ..." and returns AG_ERROR_INPUT. */
 ag_status importer_refuse(importer *i, const char *format, ...) AG_PRINTF(2, 3);
 
 #endif

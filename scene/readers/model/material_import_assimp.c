@@ -31,7 +31,7 @@ static uint32_t wrap_of(enum aiTextureMapMode mode)
                                              : IMPORT_REPEATS;
 }
 
-/* The first of up to three kinds of which the material has a picture. */
+/* Finds the first of up to three kinds of which the material has a picture. */
 static void get_picture(const assimp_writer *w, const struct aiMaterial *m, const enum aiTextureType types[3],
                         import_picture *out)
 {
@@ -61,7 +61,7 @@ static void get_picture(const assimp_writer *w, const struct aiMaterial *m, cons
     }
 }
 
-/* Readers fill in specular colours where the file has none. */
+/* assimp's readers fill in specular colours where the file has none. */
 static bool has_highlights(const struct aiMaterial *m)
 {
     int mode = 0;

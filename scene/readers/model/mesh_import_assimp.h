@@ -7,12 +7,12 @@
 #include <stdbool.h>
 #include <stdio.h>
 
-/* Whether assimp reads files whose names end so: extension with its dot, in any case. */
+/* Writes whether assimp reads files whose names end so: extension with its dot, in any case. */
 bool assimp_reads_extension(const char *extension);
 
 /* Reads the file, and writes its records, or one that says why assimp cannot read it. False: they cannot be written. */
 bool assimp_write_records(const char *path, FILE *answer);
-/* Instead of them, when the file is not to be read. */
+/* Written instead of records when the file is not to be read. */
 bool assimp_write_refusal(const char *text, FILE *answer);
 
 #endif

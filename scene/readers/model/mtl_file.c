@@ -60,7 +60,7 @@ static ag_status read_float(reader *r, const char *what, float *out_value)
     return AG_OK;
 }
 
-/* One number is grey; measured spectra and CIE's XYZ are not read. */
+/* Reads a colour. One number is grey; measured spectra and CIE's XYZ are not read. */
 static ag_status read_color(reader *r, const char *what, rgb *out_color, bool *out_is_read)
 {
     text_word first, ahead;
@@ -87,7 +87,7 @@ static ag_status read_color(reader *r, const char *what, rgb *out_color, bool *o
     return AG_OK;
 }
 
-/* Up to three numbers; *out_count of them are there. */
+/* Reads up to three numbers; *out_count of them are there. */
 static void read_numbers(reader *r, double out_values[3], int *out_count)
 {
     *out_count = 0;
@@ -102,7 +102,7 @@ static void read_numbers(reader *r, double out_values[3], int *out_count)
     }
 }
 
-/* An option of a picture; false where the word is none. */
+/* Reads an option of a picture; returns false where the word is none. */
 static bool read_option(reader *r, const text_word *word, import_picture *p)
 {
     static const char *const ONE_WORD[] = {"-blendu", "-blendv", "-boost", "-texres", "-cc", "-imfchan", "-type"};
@@ -157,7 +157,7 @@ static ag_status read_picture(reader *r, import_slot slot)
     return AG_OK;
 }
 
-/* Whether the word is one of a list that ends with NULL. */
+/* Returns whether the word is one of a list that ends with NULL. */
 static bool is_one_of(const text_word *word, const char *const *list)
 {
     for (; *list; list++)
@@ -245,7 +245,7 @@ static ag_status read_statement(reader *r, const text_word *word)
     return AG_OK;
 }
 
-/* A picture alone is as it is, not darkened. */
+/* A diffuse picture without a factor beside it is taken as it is, not multiplied by the default. */
 static void finish_material(reader *r)
 {
     if (r->now && !r->has_diffuse && r->now->pictures[IMPORT_COLOR].path[0])

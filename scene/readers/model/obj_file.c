@@ -67,7 +67,7 @@ static ag_status read_uv(obj *o)
     return AG_OK;
 }
 
-/* Any length will do, but that of a double may be none of a float. */
+/* Reads a normal of any length, and scales its largest component to 1, since floats may not hold the file's. */
 static ag_status read_normal(obj *o)
 {
     double v[3];
@@ -78,8 +78,8 @@ static ag_status read_normal(obj *o)
     return AG_OK;
 }
 
-/* One of the numbers of a corner, at *at; OBJ_NONE where there is none. Counts from 1, or back from the last one so
- * far. */
+/* Reads one of the numbers of a corner, at *at; OBJ_NONE where there is none. It counts from 1, or back from the last
+ * one so far. */
 static ag_status read_reference(obj *o, const char **at, const char *end, const text_word *word, const char *what,
                                 size_t so_far, size_t total, uint32_t *out_index)
 {
@@ -176,7 +176,7 @@ static ag_status read_group(obj *o)
     return AG_OK;
 }
 
-/* A name, in the folder of the OBJ file; *out_is_there is false where it cannot be read. */
+/* Reads the MTL file of that name, in the folder of the OBJ file; *out_is_there is false where it cannot be read. */
 static ag_status read_library(obj *o, text_word name, bool *out_is_there, char *error, size_t error_size)
 {
     const char *file = o->to.where.file, *slash = strrchr(file, '/');

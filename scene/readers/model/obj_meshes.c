@@ -54,7 +54,7 @@ static bool corner_table_enlarge(corner_table *t)
     return true;
 }
 
-/* The number of the corner, a new one where it has none yet. */
+/* Returns the number of the corner, a new one where it has none yet. */
 static bool corner_table_number(corner_table *t, obj_corner c, uint32_t *out_number)
 {
     if (2 * t->count >= t->capacity && !corner_table_enlarge(t))

@@ -51,10 +51,10 @@ typedef struct obj {
     uint32_t material, group; /* of the faces that follow */
 } obj;
 
-/* Makes room for one more; items: the address of an array's pointer. false when out of memory. */
+/* Makes room for one more item; items: the address of an array's pointer. Returns false when out of memory. */
 bool obj_grow(void *items, size_t count, size_t *capacity, size_t item_size);
 
-/* All that has been read, as meshes of the scene. Errors: AG_ERROR_INPUT, AG_ERROR_MEMORY, AG_CANCELLED. */
+/* Makes meshes of the scene of all that has been read. Errors: AG_ERROR_INPUT, AG_ERROR_MEMORY, AG_CANCELLED. */
 ag_status obj_add_meshes(obj *o);
 
 #endif

@@ -17,7 +17,7 @@ typedef struct loader {
     bool has_normals, has_uvs;
 } loader;
 
-/* realloc for count items, 1 at least */
+/* Reallocates an array for count items, 1 at least. */
 static bool resize(void *array_pointer, size_t count, size_t item_bytes)
 {
     void *old, *larger;
@@ -30,7 +30,7 @@ static bool resize(void *array_pointer, size_t count, size_t item_bytes)
 
 static uint64_t smaller(uint64_t a, uint64_t b) { return a < b ? a : b; }
 
-/* Error where the header promises more than there can be. Gives how many to make room for at first. */
+/* Refuses a header that promises more than the file can hold. Returns how many items to make room for at first. */
 static ag_status check_room(loader *l, const ply_element *e, uint64_t *out_first)
 {
     uint64_t room = ply_room_for(&l->stream, e->least_bytes);
@@ -107,7 +107,7 @@ static ag_status skip_property(loader *l, const ply_property *p)
     return ply_skip_numbers(&l->stream, p->type, count);
 }
 
-/* Number by number: ascii files, and vertices with lists. */
+/* Reads vertices number by number: those of ascii files, and those with lists. */
 static ag_status read_vertex(loader *l, const ply_element *e, uint64_t index)
 {
     double values[PLY_VERTEX_SLOTS] = {0.0};

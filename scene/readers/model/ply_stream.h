@@ -57,15 +57,15 @@ void ply_stream_close(ply_stream *s);
  * vertex 7 (byte 1234): message"; elements and bytes count from 0, as indices do. Returns AG_ERROR_INPUT. */
 ag_status ply_fail(ply_stream *s, const char *format, ...) AG_PRINTF(2, 3);
 
-/* Sees to it that `wanted` bytes (64 KiB at most) lie at next, or all that there are. */
+/* Reads on until `wanted` bytes (64 KiB at most) lie at next, or all that there are. */
 ag_status ply_fill(ply_stream *s, size_t wanted);
 /* Reads the next line of the header without its end, cut to size - 1 characters. *out_is_end: the file has ended. */
 ag_status ply_read_line(ply_stream *s, char *line, size_t size, bool *out_is_end);
-/* A number of a binary file at the address where it lies. */
+/* Returns a number of a binary file at the address where it lies. */
 double ply_decode(const unsigned char *bytes, ply_type type, ply_format format);
-/* The next number of the body. */
+/* Reads the next number of the body. */
 ag_status ply_read_number(ply_stream *s, ply_type type, double *out_value);
-/* Passes over numbers. */
+/* Skips numbers. */
 ag_status ply_skip_numbers(ply_stream *s, ply_type type, uint64_t count);
 /* How many records of that many bytes there may be from here on; UINT64_MAX where the file's size is not known. */
 uint64_t ply_room_for(const ply_stream *s, uint64_t record_bytes);

@@ -23,7 +23,7 @@ typedef struct outline {
     int x_axis, y_axis;
 } outline;
 
-/* Twice the area of a triangle; positive where it runs counter-clockwise. */
+/* Returns twice the area of a triangle; positive where it runs counter-clockwise. */
 static double turn(const outline *o, uint32_t a, uint32_t b, uint32_t c)
 {
     const vec3 *p = o->corners;
@@ -41,7 +41,7 @@ static bool is_convex(const outline *o, size_t count)
     return true;
 }
 
-/* Whether the corner in the middle can be cut off: none of the others lies in the triangle. */
+/* Returns whether the corner in the middle can be cut off: none of the others lies in the triangle. */
 static bool is_ear(const outline *o, const uint32_t *rest, size_t count, size_t middle)
 {
     uint32_t a = rest[(middle + count - 1) % count], b = rest[middle], c = rest[(middle + 1) % count];
