@@ -117,7 +117,8 @@ static ag_status set_units(const run_context *run, photon_map *map)
     }
     if (map->is_steady)
         map->flux_exponent_max = steady_exponent(map->flux_exponent_max);
-    /* The largest estimate: all k photons of the largest flux on the smallest disc; its mantissa's exponent is 63's. */
+    /* The largest estimate has all k photons of the largest flux on the smallest disc. It is given 63, a slot's largest
+     * exponent. */
     double largest = 255.0 * ldexp(1.0, map->flux_exponent_max) * (map->nearest + 1.0) /
                      ((double)map->set.emitted_paths * (double)AG_PI * (double)map->min_radius_squared);
     photon_map_derive(map, shared_exponent_of((float)fmin(largest, 1e38)) - 63);
