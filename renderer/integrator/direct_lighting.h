@@ -12,8 +12,7 @@ rgb direct_light_transmittance(const transport *t, eye_worker *worker, scene_ray
 
 /* One sample towards a lamp, or towards a light that reaches everywhere. */
 typedef struct lamp_light {
-    rgb radiance;   /* that the vertex reflects of it, weighted against samples by scattering, over the sample's density
-                     */
+    rgb radiance;   /* that the vertex reflects, weighted against samples by scattering, over the sample's density */
     uint32_t lamp;  /* the light's index; lamp and direction are valid where radiance is not black */
     vec3 direction; /* towards it, unit */
 } lamp_light;

@@ -34,7 +34,7 @@ typedef struct gather_ray {
     rgb throughput;       /* from the ray's end to its start; roulette goes by this alone */
     float travelled;      /* since its start or its last short bounce, scene units */
     int short_bounces;    /* by diffuse surfaces too near for the cache */
-    int scatterings;      /* but straight through panes */
+    int scatterings;      /* passing a pane straight is none */
     int scatterings_left; /* between the lamp and the ray's last start */
     int in_media;         /* scatterings by media */
     traced_start traced;
