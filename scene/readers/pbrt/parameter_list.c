@@ -41,7 +41,7 @@ void parameter_list_reset(parameter_list *list)
     memset(list, 0, sizeof *list);
 }
 
-/* NULL where there is nothing to copy, which is no failure. */
+/* Copies values; returns NULL where there is nothing to copy, which is no failure. */
 static void *copy_values(const void *values, size_t bytes, bool *in_out_is_good)
 {
     if (!values)
@@ -236,7 +236,8 @@ spectrum_use parameter_spectrum_use(const char *name)
     return SPECTRUM_REFLECTANCE;
 }
 
-/* The reader has looked into the files of those that have no name of pbrt's. */
+/* Gets a spectrum by its name. The reader has replaced the names of files by their values, so a name that is left is
+ * one of pbrt's. */
 static ag_status get_spectrum(const parameter_list *list, log_sink *log, const parameter *p, rgb *out_value)
 {
     const working_space *space = list->source ? list->source->space : NULL;
@@ -315,7 +316,8 @@ ag_status parameter_get_numbers(parameter_list *list, log_sink *log, const char 
     return AG_OK;
 }
 
-/* "sphere", "diffuse", ...: named materials and media say it by a parameter, their name is the user's own. */
+/* Returns the kind, "sphere", "diffuse", ...: named materials and media have it in a parameter, since their name is the
+ * user's own. */
 static const char *kind_of(const parameter_list *list)
 {
     const parameter *type = parameter_list_find(list, "type");

@@ -28,7 +28,7 @@ typedef enum parameter_type {
     PARAMETER_TEXTURE
 } parameter_type;
 
-/* The type's name as the scene file spells it: "float", "point3", ... */
+/* Returns the type's name as the scene file spells it: "float", "point3", ... */
 const char *parameter_type_name(parameter_type type);
 
 typedef struct parameter {
@@ -64,11 +64,12 @@ typedef struct parameter_list {
 } parameter_list;
 
 void parameter_list_reset(parameter_list *list); /* frees what it holds; leaves it zeroed */
-/* A copy of all that it holds; false, and *out_copy zeroed, when out of memory. */
+/* Copies a parameter with all that it holds. Returns false, with *out_copy zeroed, when out of memory. */
 bool parameter_copy(const parameter *p, parameter *out_copy);
-/* Makes one that borrows the values of another; false, and *out_parameter zeroed, when out of memory. */
+/* Makes a parameter that borrows the values of another. Returns false, with *out_parameter zeroed, when out
+ * of memory. */
 bool parameter_borrow(const parameter *p, parameter *out_parameter);
-/* Makes values that are borrowed its own, so that they can be written to. Errors: AG_ERROR_MEMORY. */
+/* Makes borrowed values the parameter's own, so that they can be written to. Errors: AG_ERROR_MEMORY. */
 ag_status parameter_own(parameter *p);
 void parameter_reset(parameter *p); /* frees what it holds; leaves it zeroed */
 
@@ -82,17 +83,18 @@ ag_status parameter_get_float(parameter_list *list, log_sink *log, const char *n
 ag_status parameter_get_int(parameter_list *list, log_sink *log, const char *name, int64_t *out_value);
 ag_status parameter_get_bool(parameter_list *list, log_sink *log, const char *name, bool *out_value);
 ag_status parameter_get_string(parameter_list *list, log_sink *log, const char *name, const char **out_value);
-/* The name of a texture; also left alone, and not marked as looked up, where the parameter is of another type. */
+/* Gets the name of a texture; it is also left alone, and the parameter not marked as looked up, where that is of
+ * another type. */
 ag_status parameter_get_texture(parameter_list *list, log_sink *log, const char *name, const char **out_texture_name);
 ag_status parameter_get_vec3(parameter_list *list, log_sink *log, const char *name, parameter_type type,
                              vec3 *out_value);
-/* Whether a colour of that name is emitted ("L", "I", "Le"), refracts or absorbs ("eta", "k", "sigma_a", "mfp", ...),
- * or reflects or transmits: all others. */
+/* Returns whether a colour of that name is emitted ("L", "I", "Le"), refracts or absorbs ("eta", "k", "sigma_a", "mfp",
+ * ...), or reflects or transmits: all others. */
 spectrum_use parameter_spectrum_use(const char *name);
-/* rgb, spectrum or blackbody; a warning that names it, and *out left alone, where the spectrum is one of pbrt's that we
- * have not. */
+/* Gets a colour of an rgb, spectrum or blackbody parameter. Where the spectrum is one of pbrt's that is not supported,
+ * a warning names it and *out is left alone. */
 ag_status parameter_get_rgb(parameter_list *list, log_sink *log, const char *name, rgb *out_value);
-/* Arrays: *out_values stays the list's; *out_count counts numbers (3 per point3), 0 where absent. */
+/* Get arrays: *out_values stays the list's; *out_count counts numbers (3 per point3), 0 where absent. */
 ag_status parameter_get_numbers(parameter_list *list, log_sink *log, const char *name, parameter_type type,
                                 const double **out_values, size_t *out_count);
 

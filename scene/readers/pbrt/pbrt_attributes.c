@@ -29,8 +29,8 @@ static size_t find_in_force(const pbrt_attributes *of, const char *name)
     return i;
 }
 
-/* Takes a parameter and puts it into force, in the place of another of its name, which the end of the block brings back
- * if it is from outside of it. */
+/* Takes a parameter and puts it into force in the place of another of its name. The end of the block brings that one
+ * back where it is from outside of the block. */
 static ag_status add_attribute(pbrt_parser *parser, parameter *p, pbrt_target target, const char *name)
 {
     pbrt_attributes *of = &parser->attributes_of[target];

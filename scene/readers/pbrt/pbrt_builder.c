@@ -76,7 +76,7 @@ static void excuse_materials(pbrt_parser *parser, size_t known_count)
         parser->named_materials[i].is_excused = true;
 }
 
-/* Into the graphics state. */
+/* Puts a placement into the graphics state. */
 static ag_status enter_placement(pbrt_parser *parser, const pbrt_call *call, const pbrt_placement *at)
 {
     parser->state.world_from_object = at->start;
@@ -94,7 +94,7 @@ static ag_status enter_placement(pbrt_parser *parser, const pbrt_call *call, con
     return AG_OK;
 }
 
-/* One directive under a placement, for which the graphics state is as it was before afterwards. */
+/* Runs one directive under a placement; the graphics state is afterwards as it was before. */
 static ag_status direct_at(pbrt_parser *parser, const pbrt_call *call, const pbrt_placement *at, pbrt_handler *handle,
                            const char *const *strings, size_t string_count, pbrt_items items, pbrt_items *emission)
 {
@@ -199,7 +199,7 @@ ag_status pbrt_builder_texture(pbrt_builder *b, const pbrt_call *call, const pbr
     return end_call(direct_at(b->parser, call, at, pbrt_texture, strings, 3, items, NULL), items);
 }
 
-/* With the type as a parameter, as the directive wants it. */
+/* Makes a named thing, with its type as a parameter, as the directive wants it. */
 static ag_status make_named(pbrt_parser *parser, const pbrt_call *call, pbrt_handler *handle,
                             const char *const *strings, pbrt_items items)
 {

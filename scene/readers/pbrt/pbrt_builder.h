@@ -18,7 +18,7 @@ struct shape;
 pbrt_builder *pbrt_builder_create(run_context *run, scene *out_scene);
 void pbrt_builder_destroy(pbrt_builder *b); /* NULL is fine */
 
-/* Who calls, for messages: FUNCTION:NUMBER:PARAMETER. Parameters hold their own `where` in the same way. */
+/* The call that messages name, as FUNCTION:NUMBER:PARAMETER. Parameters hold their own `where` in the same way. */
 typedef struct pbrt_call {
     file_location where; /* of column 0 */
     const char *label;   /* of what is made, borrowed for the time of the call */
@@ -42,14 +42,14 @@ typedef struct pbrt_placement {
     struct shape *made_mesh; /* of pbrt_builder_mesh, shared: instead of the shape's arrays; NULL: they are read */
 } pbrt_placement;
 
-/* All give errors as a file's directives do, told to the run's log; what was made before stays, and the call itself has
- * then no effect. */
+/* All calls give errors as a file's directives do, told to the run's log. What was made before stays, and a call that
+ * fails has no effect. */
 
 /* emission: of AreaLightSource; NULL: it does not shine. */
 ag_status pbrt_builder_shape(pbrt_builder *b, const pbrt_call *call, const pbrt_placement *at, const char *type,
                              pbrt_items items, pbrt_items *emission);
-/* Arrays of a trianglemesh that stay the caller's, and where they are for as long as the mesh lives: of numbers that
- * are finite. Behind positions 4 more bytes can be read. Normals and tangents are parameters. */
+/* Arrays of a trianglemesh that stay the caller's, and stay in place for as long as the mesh lives. Their numbers are
+ * finite. Behind positions 4 more bytes can be read. Normals and tangents are parameters. */
 typedef struct pbrt_borrowed {
     const float *positions; /* [3 * vertex_count] */
     const float *uvs;       /* [uv_count], or NULL; ignored with a warning where that is not as "motionsteps" says */
@@ -57,7 +57,7 @@ typedef struct pbrt_borrowed {
     size_t vertex_count, uv_count, index_count; /* vertices: of all motion steps */
 } pbrt_borrowed;
 
-/* Whether shapes of that type are meshes, whose arrays can be read once and serve in several scenes. */
+/* Returns whether shapes of that type are meshes, whose arrays can be read once and serve in several scenes. */
 bool pbrt_builder_makes_mesh(const char *type);
 /* The mesh that the parameters make where `at` puts it, alone, in a builder that is used for nothing else; without
  * triangles where it would be left out. shines: the shape has an area light, and stands where it does at the start;
@@ -70,8 +70,8 @@ ag_status pbrt_builder_light(pbrt_builder *b, const pbrt_call *call, const pbrt_
                              pbrt_items items);
 ag_status pbrt_builder_camera(pbrt_builder *b, const pbrt_call *call, const pbrt_placement *at, const char *type,
                               pbrt_items items);
-/* An instance of the object that at->object names, which is complete with it. Errors also: AG_ERROR_SCENE (nothing has
- * been added to such an object yet). */
+/* Makes an instance of the object that at->object names, which is complete with it. Errors also: AG_ERROR_SCENE
+ * (nothing has been added to such an object yet). */
 ag_status pbrt_builder_instance(pbrt_builder *b, const pbrt_call *call, const pbrt_placement *at);
 
 /* strings: name, "float" or "spectrum", class. */
@@ -95,10 +95,10 @@ ag_status pbrt_builder_state(pbrt_builder *b, const pbrt_call *call, pbrt_statem
 ag_status pbrt_builder_picture(pbrt_builder *b, const pbrt_call *call, const char *name, const struct image *picture,
                                uint64_t version);
 
-/* Whether warnings are kept to itself; errors are too. */
+/* Sets whether warnings are dropped, and errors with them. */
 void pbrt_builder_set_quiet(pbrt_builder *b, bool is_quiet);
 
-/* Settles what only the end can tell. To be called once; nothing more can be added. */
+/* Completes what depends on the whole scene. To be called once; nothing more can be added. */
 ag_status pbrt_builder_finish(pbrt_builder *b);
 
 #endif

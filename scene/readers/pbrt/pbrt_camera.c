@@ -21,7 +21,7 @@ static ag_status read_screen_window(pbrt_parser *parser, parameter_list *list, c
     return AG_OK;
 }
 
-/* The shutter: how long it is open is how bright the picture is. */
+/* Reads the shutter; the longer it is open, the brighter is the picture. */
 static ag_status read_shutter(pbrt_parser *parser, parameter_list *list, camera *c)
 {
     AG_TRY(parameter_get_float(list, parser->log, "shutteropen", &c->shutter_open));
@@ -69,7 +69,7 @@ static ag_status read_orthographic(pbrt_parser *parser, parameter_list *list, ca
     return read_screen(parser, list, c);
 }
 
-/* Screen and lens are read, as pbrt does, and mean nothing. */
+/* Reads a spherical camera. Its parameters for screen and lens are read, as pbrt does, and have no effect. */
 static ag_status read_spherical(pbrt_parser *parser, parameter_list *list, camera *c)
 {
     const char *mapping = "equalarea";
@@ -102,7 +102,7 @@ static ag_status read_camera(pbrt_parser *parser, parameter_list *list, camera *
     return pbrt_error(parser, list->where, strlen("Camera"), "unknown camera \"%s\"", list->name);
 }
 
-/* The scene's camera, whose shutter is known now, goes on to `end`. */
+/* Makes the scene's camera move to `end`, once its shutter is known. */
 static ag_status set_motion(pbrt_parser *parser, const transform *end, file_location where)
 {
     camera *c = &parser->scene->camera;

@@ -8,8 +8,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* From the current colour space to the working space, but for the indices of metals: those become Rec. 709's, and are
- * converted with their absorption. What it cannot hold is clipped, as is all else that is outside its gamut. */
+/* Converts a colour from the current colour space to the working space. The indices of metals become Rec. 709's
+ * instead, and are converted with their absorption. What a space cannot hold is clipped. */
 static ag_status convert_rgb(pbrt_parser *parser, parameter *p, size_t width)
 {
     const working_space *space = &parser->scene->space;
@@ -38,7 +38,7 @@ static ag_status convert_rgb(pbrt_parser *parser, parameter *p, size_t width)
     return AG_OK;
 }
 
-/* An error in a file of numbers, with its line. */
+/* Tells an error in a file of numbers, with its line. */
 static ag_status refuse_token(pbrt_parser *parser, const pbrt_lexer *lexer, const pbrt_token *token,
                               const char *message)
 {
@@ -101,7 +101,7 @@ ag_status pbrt_read_number_file(pbrt_parser *parser, const char *name, file_loca
     return AG_OK;
 }
 
-/* A file of wavelengths and values, unless the name is one of pbrt's. */
+/* Reads a file of wavelengths and values, unless the name is one of pbrt's. */
 static ag_status read_spectrum(pbrt_parser *parser, parameter *p, size_t width)
 {
     rgb ignored;

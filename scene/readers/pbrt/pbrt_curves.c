@@ -20,7 +20,7 @@ enum { CUTS_MAX = 16 };
  * than so many. */
 static const double RIBBON_DEVIATION = 0.005;
 enum { RIBBON_CUTS_MAX = 64 };
-/* Sines and cosines of normals that lie opposite each other know no way between. */
+/* Normals that lie opposite each other, by their cosine, have no shortest way between them. */
 static const double OPPOSITE = -0.9999;
 
 typedef struct curve_source {
@@ -44,7 +44,7 @@ static void mix(const double *a, const double *b, double t, double out[3])
         out[i] = a[i] * (1.0 - t) + b[i] * t;
 }
 
-/* A parabola as a cubic. */
+/* Writes a parabola as a cubic. */
 static void elevate(const double *a, const double *b, const double *c, double out[4][3])
 {
     memcpy(out[0], a, 3 * sizeof(double));
@@ -53,7 +53,7 @@ static void elevate(const double *a, const double *b, const double *c, double ou
     memcpy(out[3], c, 3 * sizeof(double));
 }
 
-/* The segment as it is in one set of the points. */
+/* Makes a segment as it is in one set of the points. */
 static segment make_segment(const curve_source *source, size_t index, size_t set)
 {
     segment s;
@@ -84,7 +84,7 @@ static segment make_segment(const curve_source *source, size_t index, size_t set
     return s;
 }
 
-/* The part of a segment between two of its parameters, by its blossom. */
+/* Returns the part of a segment between two of its parameters, by its blossom. */
 static segment cut(const segment *whole, double from, double to)
 {
     segment part;
@@ -121,8 +121,8 @@ static int count_cuts(const segment *s)
     return (int)fmin(fmax(ceil(pieces / CURVES_FLAT_PIECES), 1.0), CUTS_MAX);
 }
 
-/* The normals of a part of a segment whose own turn evenly from one to the other, as control points of the cubic that
- * agrees with them at thirds. ends: of the segment, of any length. */
+/* Computes the normals of a part of a segment whose own normals turn evenly from one to the other, as control points of
+ * the cubic that agrees with them at thirds. ends: of the segment, of any length. */
 static void turn_normals(const double *const ends[2], double from, double to, double out[4][3])
 {
     double unit[2][3], length[2] = {0.0, 0.0}, cosine = 0.0, at[4][3];
@@ -150,7 +150,7 @@ static void turn_normals(const double *const ends[2], double from, double to, do
     }
 }
 
-/* A ribbon needs to know where its curve goes: where two control points at an end coincide, the inner one moves by
+/* A ribbon needs the direction of its curve. Where two control points at an end coincide, the inner one is moved by
  * 1/256 of the way to the next. */
 static void part_points(segment *s)
 {
@@ -225,7 +225,7 @@ static outcome add_parts(curves *c, const transform *t, double scale, const segm
     return all;
 }
 
-/* As few parts as keep a ribbon's shape. */
+/* Adds a ribbon in as few parts as keep its shape. */
 static outcome add_ribbon(curves *c, const transform *t, double scale, segment *whole, const double *const normals[2])
 {
     part_points(whole);
@@ -367,7 +367,8 @@ static ag_status read_type(pbrt_parser *parser, parameter_list *list, curves_typ
                        name);
 }
 
-/* Mixes that pick one another in a circle are refused once all is read. */
+/* Returns whether the material may be hair. depth ends the search: mixes that pick one another in a circle are refused
+ * only once all is read. */
 static bool may_be_hair(const scene *s, uint32_t material_index, int depth)
 {
     const material *m = &s->materials[material_index];

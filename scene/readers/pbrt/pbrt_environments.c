@@ -8,7 +8,7 @@
 
 static const double PI = 3.14159265358979323846;
 
-/* The measure of "illuminance" for a picture: what reaches a surface that faces the light's z, but half of it: pbrt
+/* Returns what "illuminance" measures for a picture: half of what reaches a surface that faces the light's z. pbrt
  * counts each pixel as 2 pi / count, and scenes are lit by what comes of that. */
 static double picture_illuminance(const working_space *space, const environment *e)
 {
@@ -25,7 +25,7 @@ static double picture_illuminance(const working_space *space, const environment 
     return sum;
 }
 
-/* "portal": four corners, in world space whatever the transform. *out_is_given: whether it stands there. */
+/* Reads "portal", four corners, in world space whatever the transform. *out_is_given: whether it is there. */
 static ag_status read_portal(pbrt_parser *parser, parameter_list *list, bool *out_is_given, portal *out_portal)
 {
     const double *numbers;
@@ -44,7 +44,8 @@ static ag_status read_portal(pbrt_parser *parser, parameter_list *list, bool *ou
     return AG_OK;
 }
 
-/* The radiance that makes "illuminance" 1. With a portal a constant light is, to pbrt, a picture of one pixel. */
+/* Returns the radiance that makes "illuminance" 1. With a portal a constant light is, to pbrt, a picture of
+ * one pixel. */
 static double find_measure(const working_space *space, const light_directions *sky, bool has_portal)
 {
     if (sky->picture)

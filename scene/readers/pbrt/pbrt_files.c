@@ -51,7 +51,7 @@ ag_status pbrt_unexpected(pbrt_parser *parser, const pbrt_token *token, const ch
                       shown, token->text, token->length > SHOWN ? "..." : "", quote);
 }
 
-/* The directory of a path with its slash, or "". NULL when out of memory. */
+/* Returns the directory of a path with its slash, or "". NULL when out of memory. */
 static char *directory_of(const char *path)
 {
     const char *slash = strrchr(path, '/');
@@ -69,8 +69,8 @@ static char *join(const char *directory, const char *name)
     return path;
 }
 
-/* The path that whoever loads the scene has for a name; to be freed. False: it has none. An empty one is said here, and
- * names no file that could be read. */
+/* Asks the caller who loads the scene for the path that a name stands for; to be freed. Returns false where it has
+ * none. An empty path is an error that is told here, since it names no file. */
 static bool ask_for_file(const pbrt_parser *parser, const char *name, char **out_path)
 {
     char path[4096] = "";
@@ -137,7 +137,7 @@ ag_status pbrt_allow_picture(const pbrt_parser *parser, const char *path, char *
     return AG_ERROR_INPUT;
 }
 
-/* The files that are open, innermost first: "a.pbrt:3 < b.pbrt:7 < ..." */
+/* Lists the files that are open, innermost first: "a.pbrt:3 < b.pbrt:7 < ..." */
 static void describe_chain(const pbrt_parser *parser, file_location where, char *out_text, size_t size)
 {
     size_t used = (size_t)snprintf(out_text, size, "%s:%d", where.file, where.line);
@@ -244,7 +244,7 @@ void pbrt_pop_file(pbrt_parser *parser)
     text_file_reset(&top->file);
 }
 
-/* The next token of a value that stands without quotes; PBRT_TOKEN_END: it has no more. */
+/* Finds the next token of a value that stands without quotes; PBRT_TOKEN_END: it has no more. */
 static ag_status next_of_value(pbrt_parser *parser, pbrt_value *value, pbrt_token *out_token)
 {
     ag_status status = pbrt_lexer_next(&value->lexer, out_token);
@@ -285,7 +285,7 @@ static ag_status fill_in(pbrt_parser *parser, pbrt_file *file, pbrt_token *token
     return AG_OK;
 }
 
-/* A call ends behind its strings. */
+/* Finds the next string of a call, which ends behind its strings. */
 static ag_status next_given(pbrt_given *given, pbrt_token *out_token)
 {
     *out_token = (pbrt_token){.kind = PBRT_TOKEN_END, .where = given->where, .width = 1};

@@ -14,7 +14,7 @@ static bool is_crop_window(const double window[4])
            window[3] <= 1.0;
 }
 
-/* The film's kind, and the parameters of kinds that are not written. */
+/* Reads the film's kind, and the parameters of kinds that are not written. */
 static ag_status read_kind(pbrt_parser *parser, parameter_list *film, scene_hints *hints)
 {
     float wavelength;
@@ -41,7 +41,7 @@ static ag_status read_kind(pbrt_parser *parser, parameter_list *film, scene_hint
     return AG_OK;
 }
 
-/* pbrt-v4's PixelSensor. Only cie1931 is there, which sees as our RGB does. */
+/* Reads pbrt-v4's PixelSensor. Only cie1931 is supported, which sees as our RGB does. */
 static ag_status read_sensor(pbrt_parser *parser, parameter_list *film, scene_hints *hints)
 {
     const char *sensor = "cie1931";

@@ -88,7 +88,7 @@ static ag_status settle_sampler(pbrt_parser *parser)
     return AG_OK;
 }
 
-/* Another renderer's integrator, with all that it says. */
+/* Warns of an integrator of another renderer, and names its parameters. */
 static void name_ignored(const parameter_list *list, log_sink *log)
 {
     char names[256] = "";

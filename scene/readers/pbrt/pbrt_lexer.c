@@ -36,7 +36,7 @@ void pbrt_lexer_reset(pbrt_lexer *lexer)
     memset(lexer, 0, sizeof *lexer);
 }
 
-/* Goes over blanks, line ends and comments. */
+/* Skips blanks, line ends and comments. */
 static void skip_blanks(pbrt_lexer *lexer)
 {
     const char *p = lexer->next;
@@ -135,7 +135,7 @@ static ag_status read_string(pbrt_lexer *lexer, pbrt_token *out_token)
     return AG_OK;
 }
 
-/* Behind what begins at p, a byte of a word: ${...} is one, whatever stands in it. */
+/* Returns what stands behind the part of a word at p, a byte or ${...}, whatever stands in that. */
 static const char *skip_word_part(const char *p)
 {
     if (p[0] == '$' && p[1] == '{') {

@@ -47,11 +47,12 @@ ag_status pbrt_lexer_next(pbrt_lexer *lexer, pbrt_token *out_token);
  * through the large arrays; whatever else comes is left to pbrt_lexer_next. */
 size_t pbrt_lexer_numbers(pbrt_lexer *lexer, size_t max, double *out_values);
 
-/* The value of a word that is a number from end to end, +-INFINITY if it is too large; false if it is none. */
+/* Finds the value of a word that is a number from end to end, +-INFINITY if it is too large; returns false if it is
+ * none. */
 bool pbrt_token_number(const pbrt_token *token, double *out_value);
 bool pbrt_token_is(const pbrt_token *token, pbrt_token_kind kind, const char *text);
 
-/* The line at where, with a mark: see text_excerpt. */
+/* Writes the line at where, with a mark: see text_excerpt. */
 void pbrt_lexer_excerpt(const pbrt_lexer *lexer, file_location where, size_t width, char *out_text, size_t size);
 
 #endif

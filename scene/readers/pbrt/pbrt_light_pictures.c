@@ -45,7 +45,7 @@ ag_status pbrt_set_light_frame(pbrt_parser *parser, const parameter_list *list, 
     return AG_OK;
 }
 
-/* Tells the reason at its location; the end of memory and of the run have none. */
+/* Tells the reason at its location; running out of memory and cancelling have none. */
 static ag_status refuse_picture(pbrt_parser *parser, const parameter_list *list, ag_status status, const char *message)
 {
     if (status != AG_ERROR_MEMORY && status != AG_CANCELLED)
@@ -70,7 +70,7 @@ static ag_status read_file(pbrt_parser *parser, const char *name, bool is_gray, 
     return status;
 }
 
-/* A picture's pixels, from malloc. is_gray: they are no colours. */
+/* Reads a picture's pixels, from malloc. is_gray: they are no colours. */
 static ag_status read_pixels(pbrt_parser *parser, const parameter_list *list, const char *name, bool is_gray,
                              light_picture *out_picture)
 {
@@ -134,7 +134,7 @@ static ag_status read_common(pbrt_parser *parser, parameter_list *list, const ch
     return vec3_is_finite(*out_position) ? AG_OK : pbrt_error(parser, list->where, 1, "the light is too far away");
 }
 
-/* intensity times scale; where power is given, as much as makes a light of intensity 1 have it. */
+/* Sets the intensity, times scale; where a power is given, the intensity that has it. */
 static ag_status set_intensity(pbrt_parser *parser, const parameter_list *list, rgb color, double scale, double power,
                                double power_of_one, rgb *out_intensity)
 {

@@ -40,7 +40,7 @@ void pbrt_tell_dark_light(pbrt_parser *parser, const parameter_list *list, rgb e
     tell_dark(parser, list->where, "LightSource", list->name, emitted);
 }
 
-/* factor is a quotient of powers: it may overflow where the scene makes no sense. */
+/* Scales a colour. factor is a quotient of powers, and may overflow where the scene makes no sense. */
 static ag_status scale_color(pbrt_parser *parser, const parameter_list *list, rgb color, double factor, rgb *out_color)
 {
     *out_color = rgb_make((float)(color.r * factor), (float)(color.g * factor), (float)(color.b * factor));
@@ -72,7 +72,7 @@ static ag_status set_position(pbrt_parser *parser, const parameter_list *list, v
     return vec3_is_finite(*out_position) ? AG_OK : pbrt_refuse(parser, list, "from", "the light is too far away");
 }
 
-/* scale_color of a LightSource, told where it is black. */
+/* Works as scale_color for a LightSource, and says where the light is black. */
 static ag_status set_color(pbrt_parser *parser, const parameter_list *list, rgb color, double factor, rgb *out_color)
 {
     AG_TRY(scale_color(parser, list, color, factor, out_color));

@@ -91,7 +91,7 @@ static ag_status read_metal(pbrt_parser *parser, parameter_list *list, const cha
     return AG_OK;
 }
 
-/* One index for all light: dispersion is not simulated. */
+/* Reads one index for all light, since dispersion is not simulated. */
 static ag_status read_index(pbrt_parser *parser, parameter_list *list, const char *name, float *ior)
 {
     const parameter *eta = parameter_list_find(list, name);
@@ -124,7 +124,7 @@ static ag_status read_thin_dielectric(pbrt_parser *parser, parameter_list *list,
     return read_index(parser, list, "eta", &m->ior);
 }
 
-/* Tells of a texture for what may vary over the format's surfaces, but not over ours. */
+/* Warns of a texture for a value that varies over surfaces in pbrt, but not here. */
 static void tell_texture(pbrt_parser *parser, const parameter_list *list, const char *of, const char *name,
                          const char *stand_in)
 {
@@ -134,7 +134,8 @@ static void tell_texture(pbrt_parser *parser, const parameter_list *list, const 
                 "%s: a texture for \"%s\" that varies is not supported: %s stands in", of, name, stand_in);
 }
 
-/* A number, or a texture of one: where that varies, `otherwise`. of: whose it is, for the message. */
+/* Reads a number, or a texture that is one all over; where it varies, `otherwise` stands in. of: whose it is, for the
+ * message. */
 static ag_status read_constant(pbrt_parser *parser, parameter_list *list, const char *of, const char *name,
                                float otherwise, float *value)
 {
@@ -149,7 +150,7 @@ static ag_status read_constant(pbrt_parser *parser, parameter_list *list, const 
     return AG_OK;
 }
 
-/* As read_constant. */
+/* Works as read_constant, for a colour. */
 static ag_status read_constant_color(pbrt_parser *parser, parameter_list *list, const char *of, const char *name,
                                      rgb otherwise, const char *stand_in, rgb *value)
 {
@@ -162,8 +163,8 @@ static ag_status read_constant_color(pbrt_parser *parser, parameter_list *list, 
     return AG_OK;
 }
 
-/* Of pbrt's random walk in a coat ours keeps what it comes to. Its stuff absorbs even where its albedo is 0, and the
- * walk ends after "maxdepth" steps: both darken. "nsamples" decides pbrt's noise alone. */
+/* Of pbrt's random walk in a coat its result is kept. What the coat is filled with absorbs even where its albedo is 0,
+ * and the walk ends after "maxdepth" steps: both darken. "nsamples" decides pbrt's noise alone. */
 static ag_status read_coat_walk(pbrt_parser *parser, parameter_list *list, material *m)
 {
     static const char COAT[] = "a coat";
@@ -219,7 +220,7 @@ static ag_status read_diffuse(pbrt_parser *parser, parameter_list *list, materia
     return read_reflectance(parser, list, m);
 }
 
-/* A texture times a number, instead of the texture. */
+/* Puts a texture times a number in the place of the texture. */
 static ag_status scale_texture(pbrt_parser *parser, const parameter_list *list, float scale, uint32_t *texture_index)
 {
     if (*texture_index == SCENE_NO_TEXTURE || scale == 1.0f)
@@ -262,7 +263,7 @@ static ag_status read_diffuse_transmission(pbrt_parser *parser, parameter_list *
     return AG_OK;
 }
 
-/* Stand-ins. Each says once what it does. */
+/* Says, once for each type, what stands in for it. */
 
 static void tell_stand_in(pbrt_parser *parser, const parameter_list *list, const char *type, const char *stand_in)
 {
@@ -331,7 +332,7 @@ static ag_status read_hair(pbrt_parser *parser, parameter_list *list, material *
     return AG_OK;
 }
 
-/* The albedo of a half space that scatters and absorbs so; its surface, which is the coat's, is left out. */
+/* Returns the albedo of a half space that scatters and absorbs so, without its surface, which is the coat's. */
 static float half_space_reflectance(float sigma_a, float reduced_sigma_s)
 {
     double sum = (double)sigma_a + (double)reduced_sigma_s, albedo = sum > 0.0 ? (double)reduced_sigma_s / sum : 0.0;
@@ -339,8 +340,8 @@ static float half_space_reflectance(float sigma_a, float reduced_sigma_s)
     return (float)(0.5 * albedo * (1.0 + exp(-4.0 / 3.0 * root)) * exp(-root));
 }
 
-/* Of a named stuff, else of "sigma_a", "sigma_s" and "g"; without these of whole milk, as in pbrt. The name decides
- * even beside a "reflectance". */
+/* Finds how flesh scatters: by a name, else by "sigma_a", "sigma_s" and "g", else as whole milk, as in pbrt. The name
+ * decides even beside a "reflectance". */
 static ag_status read_flesh(pbrt_parser *parser, parameter_list *list, const char *name, material *m)
 {
     rgb sigma_a, sigma_s;
@@ -389,7 +390,7 @@ static ag_status read_measured(pbrt_parser *parser, parameter_list *list, materi
 
 /* The parameters that tilt the shading normal, and turn the grain, which all kinds have. */
 
-/* A picture of directions, as 2 c - 1 of its colours; key: the parameter that has its name. */
+/* Reads a picture of directions, as 2 c - 1 of its colours; key: the parameter that has its name. */
 static ag_status read_direction_map(pbrt_parser *parser, parameter_list *list, const char *key, const char *what,
                                     uint32_t *out_texture)
 {
@@ -406,7 +407,7 @@ static ag_status read_direction_map(pbrt_parser *parser, parameter_list *list, c
     return scene_add_texture(parser->scene, &t, out_texture);
 }
 
-/* The direction of "uroughness", which pbrt leaves at dp/du. */
+/* Reads the direction of "uroughness", which pbrt leaves at dp/du. */
 static ag_status read_grain(pbrt_parser *parser, parameter_list *list, material *m)
 {
     float degrees = 0.0f;
@@ -429,7 +430,7 @@ ag_status pbrt_read_maps(pbrt_parser *parser, parameter_list *list, material *m)
 
 /* --- the table --- */
 
-/* The material has no parameters. */
+/* Reads nothing: an interface has no parameters. */
 static ag_status read_interface(pbrt_parser *parser, parameter_list *list, material *m)
 {
     (void)parser, (void)list, (void)m;

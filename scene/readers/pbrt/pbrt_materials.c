@@ -119,7 +119,7 @@ ag_status pbrt_make_named_material(pbrt_parser *parser, file_location where)
     return status;
 }
 
-/* A named material, or where it is not made yet, as pbrt allows, an empty entry for it. */
+/* Finds a named material, or makes an empty entry for one that is not made yet, as pbrt allows. */
 static ag_status find_or_reserve(pbrt_parser *parser, const char *name, file_location where, uint32_t *out_index)
 {
     pbrt_named_material *named = find_named_material(parser, name);
@@ -151,7 +151,7 @@ ag_status pbrt_use_named_material(pbrt_parser *parser, file_location where)
     return status;
 }
 
-/* Mixes of mixes end: none is more than so many deep, which also says that there is no cycle. */
+/* Checks that mixes of mixes end: none is more than so many deep, so there is no cycle. */
 static ag_status check_mixes(pbrt_parser *parser)
 {
     enum { DEPTH_MAX = 16 };
@@ -185,7 +185,7 @@ static ag_status check_mixes(pbrt_parser *parser)
     return AG_OK;
 }
 
-/* Interfaces do not shine: lamps of a material that turned out to be one, after they were made, go dark. */
+/* Removes the light of interfaces: a material may turn out to be one after lamps of it were made. */
 static void put_out_interfaces(pbrt_parser *parser)
 {
     scene *s = parser->scene;

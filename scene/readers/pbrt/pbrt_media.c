@@ -30,7 +30,7 @@ static ag_status read_scale(pbrt_parser *parser, parameter_list *list, float *ou
     return *out_scale >= 0.0f ? AG_OK : pbrt_refuse(parser, list, "scale", "\"scale\" should not be negative");
 }
 
-/* scale is a product with a mean, which may overflow. */
+/* Scales a coefficient; scale is a product with a mean, which may overflow. */
 static rgb scaled(rgb sigma, double scale)
 {
     return rgb_make((float)(sigma.r * scale), (float)(sigma.g * scale), (float)(sigma.b * scale));
@@ -81,7 +81,7 @@ static ag_status read_homogeneous(pbrt_parser *parser, parameter_list *list, med
     return set_scattering(parser, list, sigma_s, (double)scale, m);
 }
 
-/* The mean of one of `components` components. */
+/* Returns the mean of one of `components` components. */
 static double mean_of(const double *values, size_t count, size_t components, size_t component)
 {
     double sum = 0.0;
@@ -108,7 +108,7 @@ static void tell_grid(pbrt_parser *parser, const parameter_list *list, const cha
                   scatters ? "neither absorbs nor scatters" : "absorbs alike everywhere, by its mean \"sigma_a\"");
 }
 
-/* A density for each cell of a box, times sigma_a. */
+/* Reads a density for each cell of a box, times sigma_a. */
 static ag_status read_uniform_grid(pbrt_parser *parser, parameter_list *list, medium *m)
 {
     const double *density;
@@ -129,7 +129,7 @@ static ag_status read_uniform_grid(pbrt_parser *parser, parameter_list *list, me
     return AG_OK;
 }
 
-/* sigma_a for each cell; without it, as pbrt, 1 everywhere. */
+/* Reads sigma_a for each cell; without it, as in pbrt, it is 1 everywhere. */
 static ag_status read_rgb_grid(pbrt_parser *parser, parameter_list *list, medium *m)
 {
     const double *values, *scattering;
@@ -157,7 +157,7 @@ static ag_status read_rgb_grid(pbrt_parser *parser, parameter_list *list, medium
     return AG_OK;
 }
 
-/* How dense it is where is in a file, or in pbrt's own noise. */
+/* Reads a medium whose density is in a file, or in pbrt's own noise. */
 static ag_status read_unknown_density(pbrt_parser *parser, parameter_list *list, medium *m)
 {
     const char *type = parameter_list_find(list, "type")->strings[0];
@@ -248,7 +248,7 @@ ag_status pbrt_make_named_medium(pbrt_parser *parser, file_location where)
     return status;
 }
 
-/* The empty name is that of no medium. */
+/* Reads the name of the medium on one side; the empty name is that of no medium. */
 static ag_status read_side(pbrt_parser *parser, const char *name, file_location where, size_t *out_named)
 {
     *out_named = PBRT_NO_MEDIUM;

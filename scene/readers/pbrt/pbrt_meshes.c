@@ -18,8 +18,8 @@ static bool has_area(const vec3 *positions, const uint32_t *corners)
     return u[1] * v[2] - u[2] * v[1] != 0.0 || u[2] * v[0] - u[0] * v[2] != 0.0 || u[0] * v[1] - u[1] * v[0] != 0.0;
 }
 
-/* Unit length in world space, on the outside that the file and ReverseOrientation give; zero stays zero, and the
- * triangle's own normal is then used. A mirror does not turn them over (as in pbrt). */
+/* Returns a normal of unit length in world space, on the outside that the file and ReverseOrientation give; zero stays
+ * zero, and the triangle's own normal is then used. A mirror does not turn normals over (as in pbrt). */
 static vec3 world_normal(const transform *t, bool reverse, vec3 n)
 {
     double w[3], square = 0.0, largest = (double)vec3_max_abs(n);
@@ -35,7 +35,7 @@ static vec3 world_normal(const transform *t, bool reverse, vec3 n)
     return vec3_is_finite(unit) ? unit : (vec3){0.0f, 0.0f, 0.0f};
 }
 
-/* Any length will do, but those of a double may be none of a float. */
+/* Converts a direction of any length, also one that a float cannot hold. */
 static vec3 float_direction(const double *n)
 {
     double largest = fmax(fabs(n[0]), fmax(fabs(n[1]), fabs(n[2])));
@@ -76,7 +76,7 @@ static void copy_vertices(const pbrt_mesh *source, mesh *m)
             m->tangents[i] = float_direction(source->tangents + 3 * i);
 }
 
-/* From object to world space; false where a vertex is out of reach. */
+/* Transforms vertices from object to world space; returns false where one is out of reach. */
 static bool transform_vertices(const pbrt_state *state, mesh *m)
 {
     const transform *t = &state->world_from_object;
@@ -99,7 +99,7 @@ static bool transform_vertices(const pbrt_state *state, mesh *m)
     return true;
 }
 
-/* Whether a triangle has an area in any of the sets. */
+/* Returns whether a triangle has an area in any of the sets. */
 static bool has_area_ever(const mesh *m, const uint32_t *corners)
 {
     bool has_any = false;
@@ -125,7 +125,7 @@ static size_t drop_degenerate(const mesh *m, size_t *out_late)
     return kept;
 }
 
-/* Whether vertices move that have to stand still, as those of lamps do; if so it is told. */
+/* Returns whether vertices move that have to stand still, as those of lamps do; if so it is told. */
 static bool has_to_stand_still(pbrt_parser *parser, const parameter_list *list, const mesh *m)
 {
     const pbrt_state *state = &parser->state;
@@ -221,7 +221,7 @@ ag_status pbrt_add_mesh(pbrt_parser *parser, const parameter_list *list, const p
     return pbrt_add_object_mesh(parser, list, &m, 0, source->expects_degenerate);
 }
 
-/* Whether there is as much of vertex data as there are positions: else it is dropped as in pbrt. */
+/* Returns whether there is as much of vertex data as there are positions; else it is dropped, as in pbrt. */
 static bool has_count(const pbrt_parser *parser, const parameter_list *list, const char *name, size_t count,
                       size_t expected)
 {
@@ -232,7 +232,7 @@ static bool has_count(const pbrt_parser *parser, const parameter_list *list, con
     return count == expected;
 }
 
-/* Vertex data other than the positions. */
+/* Reads vertex data other than the positions. */
 static ag_status read_vertex_data(pbrt_parser *parser, parameter_list *list, const char *name, parameter_type type,
                                   size_t expected, const double **out_values)
 {
@@ -325,7 +325,7 @@ ag_status pbrt_read_mesh_arrays(pbrt_parser *parser, parameter_list *list, size_
 
 /* --- borrowed arrays --- */
 
-/* Whether the transform leaves every bit as it is: it turns -0 into 0. */
+/* Returns whether the transform leaves every bit of the numbers as it is: even the identity turns -0 into 0. */
 static bool stays_as_it_is(const transform *t, const float *numbers, size_t count)
 {
     const transform identity = transform_identity();
@@ -352,7 +352,7 @@ static ag_status borrow_positions(const pbrt_parser *parser, const pbrt_borrowed
     return AG_OK;
 }
 
-/* Once positions are there: they tell whether triangles are to be left out. */
+/* Borrows the indices, once the positions are there, which tell whether triangles are to be left out. */
 static ag_status borrow_indices(pbrt_parser *parser, const parameter_list *list, const pbrt_borrowed *from, mesh *m)
 {
     bool all_have_area = true;
@@ -384,7 +384,7 @@ static ag_status borrow_indices(pbrt_parser *parser, const parameter_list *list,
     return AG_OK;
 }
 
-/* Directions are made unit, and so copied. */
+/* Copies directions, since they are made unit. */
 static ag_status copy_directions(const double *numbers, size_t count, vec3 **out)
 {
     if (!numbers)

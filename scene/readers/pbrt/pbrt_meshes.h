@@ -21,14 +21,14 @@ typedef struct pbrt_mesh {
 
 /* Adds it to the scene in world space, less the triangles without area. Takes source->indices, also on failure. */
 ag_status pbrt_add_mesh(pbrt_parser *parser, const parameter_list *list, const pbrt_mesh *source);
-/* pbrt_add_mesh for a mesh whose arrays, in object space, are the scene's own already: they are transformed in place
- * and taken, also on failure. dropped: triangles that were left out before, for the warning. */
+/* Works as pbrt_add_mesh, for a mesh whose arrays, in object space, are the scene's own already: they are transformed
+ * in place and taken, also on failure. dropped: triangles that were left out before, for the warning. */
 ag_status pbrt_add_object_mesh(pbrt_parser *parser, const parameter_list *list, mesh *object_mesh, size_t dropped,
                                bool expects_degenerate);
 /* Adds parser->made_mesh, whose arrays the scene then shares, or, of a lamp that would lose triangles because it stands
  * still, holds its own copies of. */
 ag_status pbrt_add_made_mesh(pbrt_parser *parser, const parameter_list *list);
-/* Whether shapes of that type may have "motionsteps". */
+/* Returns whether shapes of that type may have "motionsteps". */
 bool pbrt_has_motion_steps(const char *type);
 /* "motionsteps", which pbrt does not have: of how many sets P consists, for evenly spaced times of the shutter. Makes
  * *in_out_vertex_count, of all of them, that of one. Errors: AG_ERROR_SCENE. */

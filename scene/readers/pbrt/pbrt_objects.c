@@ -9,10 +9,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Lamps that instances make, and vertices in them: each is a light to be picked, and kept whole. */
+/* The most lamps that instances may make, and vertices in them: each is a light to be picked, and kept whole. */
 enum { LAMP_COPIES_MAX = 1 << 16, LAMP_COPY_VERTICES_MAX = 1 << 26 };
 
-/* Makes room for one more; false when out of memory. */
+/* Makes room for one more item; returns false when out of memory. */
 static bool reserve(void **items, size_t count, size_t *capacity, size_t item_bytes)
 {
     if (count < *capacity)
@@ -26,7 +26,7 @@ static bool reserve(void **items, size_t count, size_t *capacity, size_t item_by
     return true;
 }
 
-/* The object of that name, made where it is not there yet. */
+/* Finds the object of that name, or makes it. */
 static ag_status find_object(pbrt_parser *parser, const char *name, file_location where, uint32_t *out_object)
 {
     if (name_table_find(&parser->object_names, name, out_object))
@@ -188,7 +188,7 @@ static ag_status add_resting_instance(pbrt_parser *parser, const pbrt_object *o,
     return status;
 }
 
-/* An instance of the object along the current transform. */
+/* Adds an instance of the object along the current transform. */
 static ag_status add_instance(pbrt_parser *parser, const pbrt_object *o, file_location where)
 {
     const transform *start = &parser->state.world_from_object;
@@ -210,7 +210,7 @@ static ag_status add_instance(pbrt_parser *parser, const pbrt_object *o, file_lo
     return status;
 }
 
-/* The object of an instance: in a file it may come later, for a call it has to be there. */
+/* Finds the object of an instance: in a file it may come later, for a call it has to be there. */
 static ag_status find_shown_object(pbrt_parser *parser, const char *name, file_location where, uint32_t *out_object)
 {
     const bool is_there =

@@ -21,8 +21,8 @@ static bool is_constant(const parameter *p, double value)
     return true;
 }
 
-/* Passes a parameter over that the new material does not have, and says so unless it has the value that changes
- * nothing. Whether it has. */
+/* Marks a parameter as read that the new material does not have, and says so unless it has the value that changes
+ * nothing. Returns whether it has. */
 static bool drop(pbrt_parser *parser, parameter_list *list, const char *type, const char *name, double without_effect)
 {
     parameter *p = find(list, name);

@@ -29,7 +29,7 @@ ag_status pbrt_rename_parameter(parameter_list *list, const char *from, const ch
     return p && !find(list, to) ? replace_text(&p->name, to) : AG_OK;
 }
 
-/* Makes a new one of nothing, without values. */
+/* Adds a parameter without values. */
 static ag_status add_parameter(parameter_list *list, const char *name, parameter_type type, parameter **out_parameter)
 {
     parameter *larger = realloc(list->items, (list->count + 1) * sizeof *larger);
@@ -155,7 +155,7 @@ static ag_status upgrade_filter(pbrt_parser *parser, parameter_list *list)
     return pbrt_rename_parameter(list, "alpha", "sigma");
 }
 
-/* Pairs of plain numbers. */
+/* Turns "float uv" into "point2 uv": in pbrt-v3 it could hold pairs of plain numbers. */
 static ag_status upgrade_shape(pbrt_parser *parser, parameter_list *list)
 {
     parameter *uv = find(list, "uv");

@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* How many numbers a value of a type has, and of which kind. */
+/* The number and kind of the numbers that a value of a type has. */
 typedef struct value_type {
     const char *name;
     parameter_type type;
@@ -38,7 +38,7 @@ static const value_type VALUE_TYPES[] = {
     {"color", PARAMETER_RGB, 3, false, false, "rgb"},
 };
 
-/* A parameter while its values come in. */
+/* A parameter while its values are read. */
 typedef struct builder {
     parameter *p;
     const value_type *type;
@@ -54,7 +54,7 @@ static const value_type *find_type(const char *text, size_t length)
     return NULL;
 }
 
-/* Room for at least one more item; the kinds of values in one parameter never mix. */
+/* Makes room for at least one more item; the kinds of values in one parameter never mix. */
 static ag_status make_room(builder *b, size_t wanted, void **items, size_t item_bytes)
 {
     if (*items && b->p->count + wanted <= b->capacity)
@@ -107,7 +107,7 @@ static ag_status add_value(pbrt_parser *parser, builder *b, const pbrt_token *to
     return refuse_value(parser, b, token);
 }
 
-/* The fast way through long arrays: numbers as long as there are any. */
+/* Reads numbers as long as there are any: the fast way through long arrays. */
 static ag_status add_numbers(pbrt_parser *parser, builder *b)
 {
     enum { BLOCK = 16384 };
@@ -166,7 +166,7 @@ static ag_status check_values(pbrt_parser *parser, const builder *b, size_t widt
     return AG_OK;
 }
 
-/* "type name", from the quoted string that begins a parameter. */
+/* Reads "type name" from the quoted string that begins a parameter. */
 static ag_status read_declaration(pbrt_parser *parser, const pbrt_token *token, builder *b)
 {
     enum { SHOWN = 60 };
@@ -240,7 +240,7 @@ static ag_status read_parameter(pbrt_parser *parser, parameter_list *list)
     return AG_OK;
 }
 
-/* The parameters of a call, which are of their types. */
+/* Takes the parameters of a call, which have their types already. */
 static ag_status take_given(pbrt_parser *parser, parameter_list *list)
 {
     pbrt_given *given = parser->given;

@@ -12,7 +12,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Embree's BVH is used whatever the file wishes; the picture is the same. */
+/* Reads an Accelerator, which has no effect: Embree's BVH is used, and the picture is the same. */
 static ag_status accelerator(pbrt_parser *parser, file_location where)
 {
     parameter_list list;
@@ -110,7 +110,7 @@ static ag_status do_directive(pbrt_parser *parser, const pbrt_token *token)
                       token->length > SHOWN ? "..." : "", token->kind == PBRT_TOKEN_STRING ? "\"" : "");
 }
 
-/* Checks that only the end of the text allows. end: the location of the end of the first file. */
+/* Checks what can be checked only at the end of the text. end: the location of the end of the first file. */
 static ag_status check_end(pbrt_parser *parser, file_location end)
 {
     if (!parser->in_world)

@@ -8,7 +8,7 @@
 
 #include "scene_reader.h"
 
-/* pbrt_parse_file of a text in memory, as if it had been read from a file of that name. */
+/* Works as pbrt_parse_file, on a text in memory, as if it had been read from a file of that name. */
 ag_status pbrt_parse_text(run_context *run, const char *name, const char *text, size_t size, scene *out_scene);
 
 #endif

@@ -50,7 +50,8 @@ static patch make_patch(const pbrt_mesh *source, size_t index)
     return q;
 }
 
-/* A convex quadrilateral in a plane: the normals at its corners agree, where they have a length. */
+/* Returns whether a patch is a convex quadrilateral in a plane: the normals at its corners agree, where they have a
+ * length. */
 static bool is_planar_convex(const patch *q)
 {
     static const int AROUND[4] = {0, 1, 3, 2};
@@ -84,7 +85,8 @@ static bool has_one_normal(const pbrt_mesh *source, size_t index)
     return true;
 }
 
-/* Whether two triangles are the patch. Those of a quadrilateral that is no parallelogram interpolate otherwise. */
+/* Returns whether two triangles can stand for the patch. Those of a quadrilateral that is no parallelogram interpolate
+ * otherwise. */
 static bool is_flat(const pbrt_mesh *source, size_t index, const patch *q)
 {
     if (q->twist <= FLAT * q->longest)
@@ -92,7 +94,8 @@ static bool is_flat(const pbrt_mesh *source, size_t index, const patch *q)
     return is_planar_convex(q) && !source->uvs && has_one_normal(source, index);
 }
 
-/* How finely all patches are cut, 1 when every one is flat. All alike, so that neighbours share their edges' points. */
+/* Returns how finely all patches are cut, 1 when every one is flat. All are cut alike, so that neighbours share their
+ * edges' points. */
 static size_t count_steps(const pbrt_mesh *source, size_t patch_count)
 {
     double steps = 1.0;
@@ -107,7 +110,7 @@ static size_t count_steps(const pbrt_mesh *source, size_t patch_count)
     return (size_t)steps;
 }
 
-/* Two triangles per patch between the vertices there are. */
+/* Makes two triangles per patch between the vertices there are. */
 static ag_status split_flat(pbrt_mesh *m, size_t patch_count)
 {
     static const int CORNERS[6] = {0, 1, 3, 0, 3, 2};
@@ -122,8 +125,8 @@ static ag_status split_flat(pbrt_mesh *m, size_t patch_count)
     return indices ? AG_OK : AG_ERROR_MEMORY;
 }
 
-/* One value at (u, v) between its four corners. Weights that are 0 add exactly nothing, and addition commutes, so a
- * shared edge gets the same points from both its patches. */
+/* Returns one value at (u, v) between its four corners. Weights that are 0 add exactly nothing, and addition commutes,
+ * so a shared edge gets the same points from both its patches. */
 static double interpolate(const double *values, size_t width, size_t component, const uint32_t *corner, size_t i,
                           size_t j, size_t steps)
 {
@@ -136,7 +139,7 @@ static double interpolate(const double *values, size_t width, size_t component, 
     return v1 * (u1 * a + u * b) + v * (u1 * c + u * d);
 }
 
-/* A grid of steps x steps cells over each patch; positions, normals and uvs of grid become its own. */
+/* Makes a grid of steps x steps cells over each patch; positions, normals and uvs of grid become its own. */
 static ag_status cut_into_grids(const pbrt_mesh *source, size_t patch_count, size_t steps, pbrt_mesh *out_grid,
                                 double *out_arrays[3])
 {
@@ -178,7 +181,7 @@ static ag_status cut_into_grids(const pbrt_mesh *source, size_t patch_count, siz
     return AG_OK;
 }
 
-/* The values of the patches' corners, each patch with corners of its own; NULL when out of memory. */
+/* Returns the values of the patches' corners, each patch with corners of its own; NULL when out of memory. */
 static double *unshare(const double *values, size_t width, const uint32_t *indices, size_t corner_count)
 {
     double *own = malloc(corner_count * width * sizeof *own + 1);
@@ -187,7 +190,8 @@ static double *unshare(const double *values, size_t width, const uint32_t *indic
     return own;
 }
 
-/* Where the file has no uvs, (0, 0), (1, 0), (0, 1), (1, 1) on every patch. out_arrays: to be freed, on failure too. */
+/* Gives uvs to patches where the file has none: (0, 0), (1, 0), (0, 1), (1, 1) on every one. out_arrays: to be freed,
+ * on failure too. */
 static ag_status give_uvs(pbrt_mesh *m, size_t patch_count, double *out_arrays[3])
 {
     static const double UVS[8] = {0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 1.0, 1.0};

@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Displacement, and how finely it would cut the mesh. */
+/* Warns of displacement, and of how finely it would cut the mesh. */
 static void warn_displacement(pbrt_parser *parser, parameter_list *list)
 {
     static const char *const NAMES[] = {"displacement", "edgelength"};

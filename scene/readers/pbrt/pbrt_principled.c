@@ -5,7 +5,7 @@
 
 #include <string.h>
 
-/* A number, or a texture instead of it, which multiplies what then is 1. */
+/* Reads a number, or a texture in its place; the number, which the texture multiplies, then is 1. */
 static ag_status read_number(pbrt_parser *parser, parameter_list *list, const char *name, float *value,
                              uint32_t *texture_index)
 {
@@ -26,7 +26,7 @@ static ag_status read_color(pbrt_parser *parser, parameter_list *list, const cha
     return AG_OK;
 }
 
-/* The largest component of a colour as the file has it: in another colour space it may be larger. */
+/* Returns the largest component of a colour as the file has it, since it may be larger in another colour space. */
 static float most_of(const parameter_list *list, const char *name, rgb value)
 {
     const parameter *p = parameter_list_find(list, name);

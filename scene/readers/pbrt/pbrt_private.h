@@ -26,10 +26,11 @@
 
 enum { PBRT_MAX_DEPTH = 32 };        /* of files that include one another */
 enum { PBRT_MAX_PARAMETERS = 1000 }; /* of one directive, and of its attributes */
-/* Files that include others twice multiply: so many are read in all, and text_file_max_bytes of text. */
+/* Files that include others twice multiply, so the number of files read is limited, and their text by
+ * text_file_max_bytes. */
 enum { PBRT_MAX_INCLUDES = 100000 };
 
-/* The current transform's two ends, under a name. */
+/* The two ends of a current transform that has been given a name. */
 typedef struct pbrt_named_transform {
     transform start, end;
 } pbrt_named_transform;
@@ -55,7 +56,7 @@ typedef struct pbrt_file {
     name_table coordinate_system_names;
 } pbrt_file;
 
-/* The kinds of things that Attribute speaks to. */
+/* The kinds of things for which Attribute sets parameters. */
 typedef enum pbrt_target {
     PBRT_TARGET_SHAPE,
     PBRT_TARGET_LIGHT,
@@ -249,7 +250,7 @@ typedef struct pbrt_parser {
 /* Every handler of a directive: where is the directive's location; its name has been read, nothing behind it. */
 typedef ag_status pbrt_handler(pbrt_parser *parser, file_location where);
 
-/* pbrt_parser.c. NULL when out of memory. */
+/* pbrt_parser.c: makes a parser; NULL when out of memory. */
 pbrt_parser *pbrt_parser_create(run_context *run, scene *out_scene);
 void pbrt_parser_destroy(pbrt_parser *parser);
 
@@ -268,28 +269,28 @@ char *pbrt_find_file(const pbrt_parser *parser, const char *name);
 ag_status pbrt_allow_picture(const pbrt_parser *parser, const char *path, char *message, size_t message_size);
 /* Returns the picture in memory of a name; NULL: there is none. */
 const pbrt_picture *pbrt_find_picture(const pbrt_parser *parser, const char *name);
-/* Of the pixels that a name stands for, in memory or in a file that may be read; 0: it cannot be told. Errors:
- * AG_ERROR_MEMORY. */
+/* Finds the version of the pixels that a name stands for, in memory or in a file that may be read; 0: it cannot be
+ * told. Errors: AG_ERROR_MEMORY. */
 ag_status pbrt_picture_version(const pbrt_parser *parser, const char *name, uint64_t *out_version);
-/* The next token; where an included file ends, the one that included it goes on. The end of an imported file is told,
- * as often as is asked, until it is popped. */
+/* Reads the next token; where an included file ends, the one that included it goes on. The end of an imported file is
+ * told, as often as is asked, until it is popped. */
 ag_status pbrt_next(pbrt_parser *parser, pbrt_token *out_token);
 ag_status pbrt_peek(pbrt_parser *parser, pbrt_token *out_token);
 /* Tells the error with the line it is in and a mark below; always returns AG_ERROR_SCENE. */
 ag_status pbrt_error(pbrt_parser *parser, file_location where, size_t width, const char *format, ...) AG_PRINTF(4, 5);
-/* Error "DIRECTIVE expects WHAT, not TOKEN". */
+/* Tells the error "DIRECTIVE expects WHAT, not TOKEN". */
 ag_status pbrt_unexpected(pbrt_parser *parser, const pbrt_token *token, const char *directive, const char *expected);
-/* A quoted string, copied: *out_text is to be freed. Errors say "DIRECTIVE expects WHAT". */
+/* Reads a quoted string, copied: *out_text is to be freed. Errors say "DIRECTIVE expects WHAT". */
 ag_status pbrt_read_string(pbrt_parser *parser, const char *directive, const char *expected, char **out_text,
                            file_location *out_where);
 ag_status pbrt_read_numbers(pbrt_parser *parser, const char *directive, size_t count, double *out_values);
 /* Tells progress by the bytes of the first file; AG_CANCELLED when the run is cancelled. */
 ag_status pbrt_tell_progress(pbrt_parser *parser);
 
-/* pbrt_parameters.c: "DIRECTIVE name parameters". On failure the list is reset. */
+/* pbrt_parameters.c: reads the parameters of "DIRECTIVE name parameters". On failure the list is reset. */
 ag_status pbrt_read_parameters(pbrt_parser *parser, const char *directive, file_location where,
                                parameter_list *out_list);
-/* pbrt_read_parameters of a directive that has a quoted name before its parameters. */
+/* Works as pbrt_read_parameters, for a directive that has a quoted name before its parameters. */
 ag_status pbrt_read_named_parameters(pbrt_parser *parser, const char *directive, const char *expected,
                                      file_location where, parameter_list *out_list);
 
@@ -298,26 +299,26 @@ pbrt_handler pbrt_color_space;
 /* Makes rgb parameters the working space's and reads the files of spectra. width: of the quoted "type name". Errors:
  * AG_ERROR_SCENE, AG_ERROR_INPUT (a file cannot be read), AG_ERROR_MEMORY. */
 ag_status pbrt_settle_color(pbrt_parser *parser, parameter *p, size_t width);
-/* A text file of nothing but numbers and comments, named at that location; hint ends the message where it cannot be
- * read. *out_numbers is to be freed. Errors: as above. */
+/* Reads a text file of nothing but numbers and comments, named at that location; hint ends the message where it cannot
+ * be read. *out_numbers is to be freed. Errors: as above. */
 ag_status pbrt_read_number_file(pbrt_parser *parser, const char *name, file_location where, size_t width,
                                 const char *hint, double **out_numbers, size_t *out_count);
 
-/* pbrt_old_parameters.c: what the list says in pbrt-v3's words, said in pbrt-v4's; all but materials. Errors:
+/* pbrt_old_parameters.c: translates what a list says in pbrt-v3's words into pbrt-v4's, for all but materials. Errors:
  * AG_ERROR_SCENE, AG_ERROR_MEMORY. */
 ag_status pbrt_upgrade_parameters(pbrt_parser *parser, parameter_list *list);
-/* Where both are there the new name's value holds. */
+/* Renames a parameter. Where both names are there, the new one's value holds. */
 ag_status pbrt_rename_parameter(parameter_list *list, const char *from, const char *to);
-/* A parameter that the file has not, unless it has it. */
+/* Adds a parameter, unless the file has it. */
 ag_status pbrt_add_string(parameter_list *list, const char *name, parameter_type type, const char *value);
 
 /* pbrt_attributes.c */
 pbrt_handler pbrt_attribute_directive;
-/* Brings back, after a block has ended, those that were in force before it. */
+/* Brings back, after a block has ended, the attributes that were in force before it. */
 void pbrt_leave_attributes(pbrt_parser *parser);
 /* Adds those in force for the list's directive, less those that it says itself. Errors: AG_ERROR_MEMORY. */
 ag_status pbrt_append_attributes(pbrt_parser *parser, parameter_list *list);
-/* Tells, at the end, of each that no directive has used. */
+/* Warns, at the end, of each attribute that no directive has used. */
 void pbrt_warn_unused_attributes(const pbrt_parser *parser);
 void pbrt_free_attributes(pbrt_parser *parser);
 
@@ -333,10 +334,10 @@ pbrt_handler pbrt_import, pbrt_world_begin, pbrt_world_end, pbrt_attribute_begin
     pbrt_transform_begin, pbrt_transform_end, pbrt_reverse_orientation;
 ag_status pbrt_save_state(pbrt_parser *parser, file_location where, bool is_object, bool is_import);
 ag_status pbrt_restore_state(pbrt_parser *parser, file_location where, const char *directive, bool is_object);
-/* Error where a Begin of the file that ends at that location has no End there. */
+/* Tells an error where a Begin of the file that ends at that location has no End there. */
 ag_status pbrt_check_blocks(pbrt_parser *parser, file_location end);
-/* At the end of an imported file: what is open is an error, else the state that it began with is brought back and the
- * file popped. */
+/* Ends an imported file: an open block is an error, else the state that the file began with is brought back, and the
+ * file is popped. */
 ag_status pbrt_end_import(pbrt_parser *parser, file_location end);
 
 /* pbrt_objects.c: what is kept once, and where it is shown. */
@@ -349,7 +350,7 @@ void pbrt_leave_object(pbrt_parser *parser);
 ag_status pbrt_add_object_lamp(pbrt_parser *parser, shape *s, file_location where);
 /* Shows a scene's object along the current transform as it moves: within the open object, or in the world. */
 ag_status pbrt_show_moving_shape(pbrt_parser *parser, uint32_t object_index, file_location where);
-/* Makes the instances that came early. Error where one is of an object that never came. */
+/* Makes the instances that came early. It is an error where one is of an object that never came. */
 ag_status pbrt_end_objects(pbrt_parser *parser);
 void pbrt_reset_objects(pbrt_parser *parser);
 
@@ -361,22 +362,23 @@ ag_status pbrt_name_coordinate_system(pbrt_parser *parser, const char *name, con
                                       const transform *end);
 /* Returns whether the current transform moves during the shutter, by its two ends. */
 bool pbrt_is_moving(const pbrt_parser *parser);
-/* From one transform to another in TransformTimes, seen through the camera's shutter. Errors as motion_make's, at the
- * directive. */
+/* Makes the motion from one transform to another in TransformTimes, seen through the camera's shutter. Errors as
+ * motion_make's, at the directive. */
 ag_status pbrt_make_motion(pbrt_parser *parser, const transform *start, const transform *end, file_location where,
                            const char *directive, motion *out_motion);
 /* Makes the path of the current transform, from its start by way of state.between to its end. The caller frees the
  * path's segments. Errors: as pbrt_make_motion, and AG_ERROR_MEMORY. */
 ag_status pbrt_make_path(pbrt_parser *parser, file_location where, const char *directive, motion_path *out_path);
-/* Whether the current transform cannot be undone; then a warning, once for each of what, that it is left out. */
+/* Returns whether the current transform cannot be inverted, and then warns, once for each of what, that it is
+ * left out. */
 bool pbrt_is_flattened(pbrt_parser *parser, file_location where, const char *what);
-/* A warning, once for each of what, that it does not move. */
+/* Warns, once for each of what, that it does not move. */
 void pbrt_warn_still(pbrt_parser *parser, file_location where, const char *what);
 
 /* pbrt_materials.c */
 pbrt_handler pbrt_material, pbrt_make_named_material, pbrt_use_named_material;
 ag_status pbrt_add_default_material(pbrt_parser *parser);
-/* Error where a material was used and never made. */
+/* Tells an error where a material was used and never made. */
 ag_status pbrt_check_named_materials(pbrt_parser *parser);
 
 /* pbrt_undo.c: how far a scene had come before a call, and the way back there when the call fails. */
@@ -396,11 +398,11 @@ void pbrt_go_back(pbrt_parser *parser, const pbrt_mark *mark);
 
 /* pbrt_media.c */
 pbrt_handler pbrt_make_named_medium, pbrt_medium_interface;
-/* The scene's medium for one of the state's. */
+/* Returns the scene's medium for one of the state's. */
 uint32_t pbrt_medium_index(const pbrt_parser *parser, size_t named);
-/* pbrt_medium_index of one that a shape or a light is in now: it has to be made. */
+/* Works as pbrt_medium_index, for a medium that a shape or a light is in now, so that it has to be made. */
 uint32_t pbrt_use_medium(pbrt_parser *parser, size_t named);
-/* Error where a medium was used and never made. */
+/* Tells an error where a medium was used and never made. */
 ag_status pbrt_check_named_media(pbrt_parser *parser);
 
 /* A kind of material by its name in a scene. read: reads its parameters into *m, which is made of its kind. */
@@ -411,7 +413,7 @@ typedef struct pbrt_material_row {
     pbrt_material_reader *read;
 } pbrt_material_row;
 
-/* pbrt_material_kinds.c: the row of that name, or NULL. */
+/* pbrt_material_kinds.c: returns the row of that name, or NULL. */
 const pbrt_material_row *pbrt_material_row_of(const char *name);
 /* Readers that are in files of their own: pbrt_materials.c, pbrt_principled.c. */
 pbrt_material_reader pbrt_read_mix, pbrt_read_principled;
@@ -427,8 +429,8 @@ pbrt_handler pbrt_texture;
 /* Loads the picture that the parameter names, and sets t->image_index. */
 ag_status pbrt_load_image(pbrt_parser *parser, const parameter_list *list, const char *parameter_name,
                           const char *file_name, image_encoding encoding, texture *t);
-/* A parameter that may be a texture. *out_texture_index is the texture's, or SCENE_NO_TEXTURE; *out_constant is written
- * where the parameter stands and has the same value everywhere (a constant texture has), else left alone.
+/* Gets a parameter that may be a texture. *out_texture_index is the texture's, or SCENE_NO_TEXTURE; *out_constant is
+ * written where the parameter is there and has the same value everywhere (a constant texture has), else left alone.
  * Errors: as of parameter_get_rgb and parameter_get_float, and where no such texture of the wanted type is there. */
 ag_status pbrt_get_rgb_texture(pbrt_parser *parser, parameter_list *list, const char *name, rgb *out_constant,
                                uint32_t *out_texture_index);
@@ -441,7 +443,7 @@ pbrt_handler pbrt_light_source, pbrt_area_light_source;
 ag_status pbrt_add_area_light(pbrt_parser *parser, const pbrt_area_light *source, uint32_t shape_index,
                               file_location where);
 
-/* Each comes as light_make leaves it; its pictures are the caller's. */
+/* Make lights; each comes as light_make leaves it, and its pictures are the caller's. */
 /* pbrt_environments.c: LightSource "infinite". */
 ag_status pbrt_infinite_light(pbrt_parser *parser, parameter_list *list, light *out_light);
 /* pbrt_light_pictures.c: LightSource "goniometric" and "projection". */
@@ -450,9 +452,9 @@ ag_status pbrt_projection_light(pbrt_parser *parser, parameter_list *list, light
 /* world_from_light: the axes of the current transform, or with swaps_yz the light's y and z along its z and y. What is
  * no rotation, reflection or scaling keeps the light's z axis, and x as far as it can. */
 ag_status pbrt_set_light_frame(pbrt_parser *parser, const parameter_list *list, bool swaps_yz, frame *out_frame);
-/* Says so where what a LightSource sends is black. */
+/* Warns where a LightSource sends only black. */
 void pbrt_tell_dark_light(pbrt_parser *parser, const parameter_list *list, rgb emitted);
-/* The picture called name, "filename" of the list; its colours averaged where is_gray. */
+/* Reads the picture called name, "filename" of the list; its colours are averaged where is_gray. */
 ag_status pbrt_read_environment(pbrt_parser *parser, const parameter_list *list, const char *name, bool is_gray,
                                 struct environment **out_environment);
 
@@ -465,10 +467,10 @@ ag_status pbrt_settle_realistic(pbrt_parser *parser);
 
 /* pbrt_hints.c: Integrator, Sampler, Film and PixelFilter. */
 pbrt_handler pbrt_integrator, pbrt_sampler, pbrt_film, pbrt_pixel_filter;
-/* Into scene.hints, once the last of them has been read. */
+/* Fills scene.hints, once the last of these directives has been read. */
 ag_status pbrt_settle_hints(pbrt_parser *parser);
 void pbrt_reset_hints(pbrt_parser *parser); /* frees what is kept of them */
-/* An integer parameter from least to most; where it is absent the hint stays as it is. */
+/* Gets an integer parameter from least to most; where it is absent the hint stays as it is. */
 ag_status pbrt_get_integer_hint(pbrt_parser *parser, parameter_list *list, const char *name, int64_t least,
                                 int64_t most, integer_hint *in_out_hint);
 

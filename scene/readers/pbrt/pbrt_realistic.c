@@ -13,8 +13,9 @@ typedef struct thin_lens {
     double focal_length, pupil_radius; /* m */
 } thin_lens;
 
-/* A ray along the axis at height 1 goes through all surfaces: where it crosses the axis tells the focal length, and its
- * height at the stop how wide the stop looks from before the lens. False where it never crosses. */
+/* Traces a ray along the axis, at height 1, through all surfaces. Where it crosses the axis tells the focal
+ * length, and its height at the stop how wide the stop looks from before the lens. Returns false where it
+ * never crosses the axis. */
 static bool reduce(const double *surfaces, size_t count, double stop_diameter, thin_lens *out_lens)
 {
     double height = 1.0, slope = 0.0, index = 1.0, pupil = 0.0;

@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Whether the last shape of the scene has this name, or as little one. */
+/* Returns whether the last shape of the scene has this name, or has none where this is none. */
 static bool is_last_named(const scene *s, const char *name)
 {
     const char *before = s->shape_count > 0 ? scene_name(s, NAMED_SHAPE, s->shape_count - 1) : NULL;
@@ -41,7 +41,7 @@ ag_status pbrt_add_shape(pbrt_parser *parser, const parameter_list *list, shape 
     return shines ? pbrt_add_area_light(parser, &parser->state.area_light, index, list->where) : AG_OK;
 }
 
-/* Whether normals can be computed in floats, whose squares end at 1e38 and 1e-38, in object space and in the
+/* Returns whether normals can be computed in floats, whose squares end at 1e38 and 1e-38, in object space and in the
  * world's. */
 static bool is_in_reach_of_floats(const quadric *q)
 {
@@ -141,7 +141,7 @@ static ag_status read_disk(pbrt_parser *parser, parameter_list *list)
     return add_quadric(parser, list, &s);
 }
 
-/* An interface with the same on both sides can be neither seen nor felt. */
+/* Returns whether a shape has no effect: an interface with the same medium on both sides. */
 static bool is_nothing(const pbrt_parser *parser)
 {
     return parser->state.has_no_surface && !parser->state.area_light.is_set &&
@@ -157,7 +157,7 @@ static ag_status read_alpha(pbrt_parser *parser, parameter_list *list)
     return AG_OK;
 }
 
-/* Shares what was made of its arrays before, in the space that is the current one. */
+/* Adds a mesh that shares what was made of its arrays before, in the same space. */
 static ag_status add_made_mesh(pbrt_parser *parser, parameter_list *list)
 {
     const parameter *file = parameter_list_find(list, "filename");
@@ -224,13 +224,14 @@ static ag_status read_shape(pbrt_parser *parser, parameter_list *list)
 
 static bool is_curve(const parameter_list *list) { return strcmp(list->name, "curve") == 0; }
 
-/* A curve's width is of its own space, where it is alike all round. */
+/* Returns whether the transform stretches a curve unevenly: its width is that of its own space, where it is alike all
+ * round. */
 static bool is_stretched_curve(const pbrt_parser *parser, const parameter_list *list)
 {
     return is_curve(list) && !(transform_uniform_scale(&parser->state.world_from_object) > 0.0);
 }
 
-/* Whether the current transform goes the same way between its ends as that of the curves before. */
+/* Returns whether the current transform moves between its ends as that of the curves before. */
 static bool is_same_between(const pbrt_parser *parser)
 {
     const pbrt_state *state = &parser->state;
@@ -242,7 +243,7 @@ static bool is_same_between(const pbrt_parser *parser)
     return true;
 }
 
-/* Whether curves have been put there just before. */
+/* Returns whether curves join those that have been put there just before. */
 static bool joins_curves(const pbrt_parser *parser, const parameter_list *list)
 {
     const pbrt_state *state = &parser->state;

@@ -94,8 +94,8 @@ ag_status pbrt_check_blocks(pbrt_parser *parser, file_location end)
                       saved->where.column);
 }
 
-/* The imported file begins with a copy of the state, and without named coordinate systems, as pbrt has it: there, it
- * may be read beside the other. What it names otherwise, materials and textures, is everybody's. */
+/* Imports a file. It begins with a copy of the state, and without named coordinate systems: pbrt has it so, since it
+ * may read the file beside the other. Materials and textures that the file names are known everywhere. */
 ag_status pbrt_import(pbrt_parser *parser, file_location where)
 {
     char *name;

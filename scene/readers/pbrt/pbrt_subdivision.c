@@ -8,8 +8,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* pbrt goes round a vertex clockwise, and so has the outside where triangles look clockwise: turned here, indices and
- * normals, so that the two agree. */
+/* Turns the mesh over, indices and normals: pbrt goes round a vertex clockwise, and so has the outside where triangles
+ * look clockwise. */
 static void turn_over(loop_mesh *m)
 {
     for (size_t i = 0; i < m->triangle_count; i++) {
@@ -71,7 +71,7 @@ static ag_status subdivide(const pbrt_mesh *control, size_t triangle_count, int 
     return status;
 }
 
-/* Whether all sets together have no more triangles than the finest mesh may have. */
+/* Returns whether all sets together have no more triangles than the finest mesh may have. */
 static bool is_in_reach(size_t triangle_count, int64_t levels, uint32_t motion_segments)
 {
     size_t most = LOOP_MAX_TRIANGLES / (motion_segments + 1);

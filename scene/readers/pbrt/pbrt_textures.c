@@ -39,7 +39,7 @@ static ag_status find_texture(pbrt_parser *parser, parameter_list *list, const c
     return pbrt_refuse(parser, list, name, "no %s texture is named \"%s\"", type_word(is_spectrum), texture_name);
 }
 
-/* The texture of the parameter, or where there is none SCENE_NO_TEXTURE; one that is constant becomes its value. */
+/* Gets the texture of the parameter, or SCENE_NO_TEXTURE where there is none; a constant texture becomes its value. */
 static ag_status get_texture(pbrt_parser *parser, parameter_list *list, const char *name, bool is_spectrum,
                              bool *out_is_there, rgb *out_constant, uint32_t *out_texture_index)
 {
@@ -78,7 +78,7 @@ ag_status pbrt_get_float_texture(pbrt_parser *parser, parameter_list *list, cons
 
 /* The inputs and values of a texture */
 
-/* A colour or a float that is the same everywhere, as the texture is; in *value already: the default. */
+/* Reads a colour or a float, as the texture is, that is the same everywhere; *value comes with the default. */
 static ag_status read_value(pbrt_parser *parser, parameter_list *list, const char *name, bool is_spectrum, rgb *value)
 {
     if (is_spectrum)
@@ -100,7 +100,7 @@ static ag_status read_input(pbrt_parser *parser, parameter_list *list, const cha
     return AG_OK;
 }
 
-/* A word out of several; *out_which is left alone where the parameter is absent. */
+/* Reads one of several words; *out_which is left alone where the parameter is absent. */
 static ag_status read_word(pbrt_parser *parser, parameter_list *list, const char *name, const char *const *words,
                            int word_count, int *out_which)
 {
@@ -167,7 +167,7 @@ static ag_status read_constant(pbrt_parser *parser, parameter_list *list, textur
     return read_value(parser, list, "value", t->is_spectrum, &t->inputs[0].value);
 }
 
-/* pbrt-v3's: both are of the texture's type. */
+/* Reads pbrt-v3's "scale", whose inputs are both of the texture's type. */
 static ag_status read_old_scale(pbrt_parser *parser, parameter_list *list, texture *t)
 {
     log_at_once(parser->log, AG_LOG_WARNING, list->where, "old scale",
@@ -184,7 +184,7 @@ static ag_status read_scale(pbrt_parser *parser, parameter_list *list, texture *
     return read_input(parser, list, "scale", false, 1.0f, &t->inputs[1]);
 }
 
-/* The two between which a texture mixes or chooses. */
+/* Reads the two inputs between which a texture mixes or chooses. */
 static ag_status read_pair(pbrt_parser *parser, parameter_list *list, const char *first, float first_fallback,
                            const char *second, texture *t)
 {
@@ -237,7 +237,7 @@ static ag_status read_bilerp(pbrt_parser *parser, parameter_list *list, texture 
     return AG_OK;
 }
 
-/* pbrt-v3's "gamma": whether it is sRGB, or in its last days a power. */
+/* Reads pbrt-v3's "gamma": whether the picture is sRGB, or, in its last versions, a power. */
 static ag_status read_old_encoding(pbrt_parser *parser, parameter_list *list, image_encoding *encoding)
 {
     const parameter *gamma = parameter_list_find(list, "gamma");
@@ -259,7 +259,7 @@ static ag_status read_old_encoding(pbrt_parser *parser, parameter_list *list, im
     return AG_OK;
 }
 
-/* pbrt's encodings; of colours also the config's colour spaces. */
+/* Reads one of pbrt's encodings, for colours also one of the config's colour spaces. */
 static ag_status read_encoding(pbrt_parser *parser, parameter_list *list, bool is_color, image_encoding *encoding)
 {
     const char *text = NULL;
@@ -275,7 +275,7 @@ static ag_status read_encoding(pbrt_parser *parser, parameter_list *list, bool i
                        spaces[0] ? "; " : "", spaces);
 }
 
-/* No path of a file begins so; to be freed, NULL when out of memory. */
+/* Returns a name for a picture in memory, which no path of a file begins with; to be freed, NULL when out of memory. */
 static char *name_picture(const char *name)
 {
     static const char BEFORE[] = "memory:";
@@ -370,7 +370,7 @@ static ag_status read_marble(pbrt_parser *parser, parameter_list *list, texture 
     return read_octaves(parser, list, t);
 }
 
-/* Ptex has its coordinates in faces of its own, which no mesh of ours has. */
+/* Makes a plain stand-in: Ptex has its coordinates in faces of its own, which no mesh here has. */
 static ag_status read_stand_in(pbrt_parser *parser, parameter_list *list, texture *t)
 {
     log_at_once(parser->log, AG_LOG_WARNING, list->where, "texture:ptex",

@@ -7,8 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* One end of the current transform becomes itself (or the identity) times t. What can be undone piece by piece may
- * still overflow as a whole. */
+/* Multiplies one end of the current transform, or the identity, by t. What can be inverted piece by piece may still
+ * overflow as a whole. */
 static ag_status apply_to(pbrt_parser *parser, file_location where, const char *directive, bool replaces,
                           const transform *t, transform *end)
 {
@@ -38,8 +38,8 @@ static ag_status apply(pbrt_parser *parser, file_location where, const char *dir
     return AG_OK;
 }
 
-/* Exporters write such transforms around what cannot be seen, and pbrt reads on: as long as they hold, nothing is
- * made. Before WorldBegin they are the camera's. */
+/* Takes a transform that cannot be inverted. Exporters write such ones around what cannot be seen, and pbrt reads on:
+ * as long as they hold, nothing is made. Before WorldBegin they are the camera's, and an error. */
 static ag_status flatten(pbrt_parser *parser, file_location where, const char *directive, const char *what)
 {
     if (!parser->in_world)
@@ -67,7 +67,7 @@ bool pbrt_is_moving(const pbrt_parser *parser)
     return parser->state.between_count > 0 || memcmp(start->m, end->m, sizeof start->m) != 0;
 }
 
-/* One of a path's segments, which take equally long. */
+/* Makes one of a path's segments, which take equally long. */
 static ag_status make_segment(pbrt_parser *parser, const transform *start, const transform *end, uint32_t index,
                               uint32_t count, file_location where, const char *directive, motion *out_motion)
 {
@@ -168,7 +168,7 @@ ag_status pbrt_look_at(pbrt_parser *parser, file_location where)
     return apply(parser, where, "LookAt", false, &t);
 }
 
-/* [ 16 numbers ], column by column. */
+/* Reads [ 16 numbers ], column by column. */
 static ag_status read_matrix(pbrt_parser *parser, const char *directive, bool *out_is_singular,
                              transform *out_transform)
 {
