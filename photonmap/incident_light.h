@@ -16,24 +16,18 @@
 #ifndef AFTERGLOW_INCIDENT_LIGHT_H
 #define AFTERGLOW_INCIDENT_LIGHT_H
 
+#include "incident_guide.h"
 #include "photon_tree.h"
-
-enum { INCIDENT_SIDE = 8, INCIDENT_BINS = INCIDENT_SIDE * INCIDENT_SIDE, INCIDENT_ONE = 1 << 16 };
 
 /* The number of blocks of photons in a cell, log2, and the most photons of one. */
 enum { INCIDENT_CELL_BLOCKS_LOG2 = 5, INCIDENT_CELL_MAX = PHOTON_BLOCK_LANES << INCIDENT_CELL_BLOCKS_LOG2 };
 
-/* The lower bounds of the bins in [0, INCIDENT_ONE), strictly ascending from 0, row by row. They are stored by column
- * and row, so that a column is one vector. */
-typedef struct incident_histogram {
-    uint16_t begins[INCIDENT_SIDE][INCIDENT_SIDE];
-} incident_histogram;
-
 typedef struct incident_light {
     photon_tree tree;    /* borrowed; empty: nothing is guided */
     uint32_t cell_depth; /* depth of the nodes that are cells */
-    uint32_t
-        *cells; /* owned: the first histogram << 6 of each cell, and a bit for each of the six directions that it has */
+    /* Owned; of each cell the index of its first histogram << 6, and a bit for each of the six faces of a cube that it
+     * has a histogram of. */
+    uint32_t *cells;
     incident_histogram *histograms; /* owned */
     uint32_t histogram_count;
 } incident_light;
@@ -49,27 +43,7 @@ uint64_t incident_light_bytes(const incident_light *l);
 typedef void incident_photons_fn(void *user, uint32_t histogram, const uint32_t *photons, uint32_t count);
 ag_status incident_light_visit(run_context *run, const incident_light *l, incident_photons_fn *fn, void *user);
 
-/* A histogram that guides rays from a point, and its frame. */
-typedef struct incident_guide {
-    frame around; /* z is the normal */
-    const incident_histogram *histogram;
-} incident_guide;
-
 /* Finds the guide at a point; false where there is none. normal: unit, on the side of the incident light. */
 bool incident_light_find(const incident_light *l, vec3 position, vec3 normal, incident_guide *out_guide);
-
-/* Warps up to INCIDENT_WARPS_MAX points of the unit square by the guide's density. out_weights: 1 / that density: the
- * factor of a ray by the new point, mapped by sample_cosine_hemisphere in the guide's frame, relative to a cosine
- * sampled one. The arrays are read and written up to a multiple of eight elements, which must be numbers of [0, 1). */
-enum { INCIDENT_WARPS_MAX = 64 };
-void incident_guide_warp(const incident_guide *guide, uint32_t count, float in_out_u[2][INCIDENT_WARPS_MAX],
-                         float out_weights[INCIDENT_WARPS_MAX]);
-
-/* incident_guide_warp of a single pair of numbers, in plain C, with the same bits. */
-float incident_guide_warp_one(const incident_guide *guide, vec2 *in_out_u);
-
-/* Returns the density per solid angle of directions that are warped so and mapped by sample_cosine_hemisphere; 0 below
- * the surface. direction: unit. */
-float incident_guide_density(const incident_guide *guide, vec3 direction);
 
 #endif
