@@ -12,7 +12,7 @@ enum { DISPLAY_PACKET_BYTES_MAX = AG_TILE_SIZE * AG_TILE_SIZE * 4 + 1024 };
 
 typedef struct display_packet {
     size_t size;
-    bool has_overflowed; /* it would have been larger than there is room: it is not to be sent */
+    bool has_overflowed; /* it would be larger than the buffer, and is not to be sent */
     unsigned char bytes[DISPLAY_PACKET_BYTES_MAX];
 } display_packet;
 

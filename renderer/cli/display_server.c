@@ -44,7 +44,7 @@ struct display_server {
     uint64_t *versions;  /* of its tiles, as the viewer has them */
     uint64_t turn;       /* which of the films it is */
     char name[512];
-    bool is_leaving, is_done; /* main waits for the film to be sent; it is, or cannot be */
+    bool is_leaving, is_done; /* main waits for the film to be sent; it is sent, or cannot be */
     bool is_stopping;
     bool is_reached; /* there has been a connection */
     bool has_warned;
@@ -297,7 +297,7 @@ static void *run(void *user)
         if (d->film) {
             pthread_mutex_unlock(&d->lock);
             send_film(d, turn, was_leaving);
-            if (was_leaving && d->opened_turn != turn) /* lost: once more, if it is there again */
+            if (was_leaving && d->opened_turn != turn) /* the viewer was lost: the film is sent again if it is back */
                 send_film(d, turn, true);
             pthread_mutex_lock(&d->lock);
         }

@@ -211,7 +211,7 @@ enum { READ_SCENE = -1, READ_SKY = -2 };
 typedef struct use_list {
     file_use *uses; /* owned */
     size_t count;
-    bool has_common; /* what all frames read or write under one name is noted */
+    bool has_common; /* files that all frames share are noted already */
 } use_list;
 
 static void add_use(use_list *list, const char *path, int frame, int file)

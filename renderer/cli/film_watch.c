@@ -96,7 +96,7 @@ static void draw(film_watch *w, FILE *terminal, terminal_size *size)
     /* after the terminal has changed its size, rows are wrapped or gone: the picture begins anew below them */
     const int drawn_rows = is_same_size(size, &w->drawn_in) ? w->drawn_rows : 0;
     const int rows = write_picture(w, made, size, width, height, is_by_sixels, drawn_rows);
-    if (fclose(made) == 0 && rows > 0) { /* at once: standard error has no buffer */
+    if (fclose(made) == 0 && rows > 0) { /* written at once, since standard error has no buffer */
         fwrite(text, 1, length, terminal);
         w->drawn_rows = rows;
         w->drawn_in = *size;

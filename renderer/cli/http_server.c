@@ -20,7 +20,7 @@
 
 enum {
     CONNECTIONS_MOST = 48,       /* with more, the one that has been without a whole request for longest is closed */
-    CONNECTIONS_OVER = 16,       /* that may be there until that has happened */
+    CONNECTIONS_OVER = 16,       /* connections beyond that, until it is closed */
     CONNECTION_BYTES = 16 << 10, /* of headers and what is sent at once */
     IDLE_SECONDS = 10,           /* of a connection on which nothing moves */
     ANSWER_SECONDS = 30,         /* for an answer to be taken */
@@ -37,8 +37,8 @@ struct http_server {
     struct visitor {
         bool is_there, is_asking; /* asking: its request has been let in, and not been answered to the end */
         int socket;
-        uint64_t since; /* a number that grows with each connection and each request that has ended */
-    } visitors[CONNECTIONS_MOST + CONNECTIONS_OVER]; /* the server's thread's */
+        uint64_t since; /* counts connections and ended requests: its value at this one's last */
+    } visitors[CONNECTIONS_MOST + CONNECTIONS_OVER]; /* used by the server's thread alone */
     uint64_t turn;
     atomic_int underway; /* requests that have been let in and not been answered to the end */
 };
@@ -417,7 +417,7 @@ void http_server_stop(http_server *server)
         return;
     const int listener = MHD_quiesce_daemon(server->daemon);
     for (int i = 0; i < LAST_PAUSES && atomic_load(&server->underway) > 0; i++)
-        nanosleep(&pause, NULL); /* who has asked for the end is answered */
+        nanosleep(&pause, NULL); /* lets the answer to a request to end be sent */
     MHD_stop_daemon(server->daemon);
     if (listener >= 0)
         close(listener);

@@ -98,7 +98,8 @@ static uint64_t shown_bytes(const options *o, const ag_render_settings *settings
     const double pixels = (crop[1] - crop[0]) * settings->width * (crop[3] - crop[2]) * settings->height;
     const int each =
         (o->page ? PAGE_BYTES_PER_PIXEL : 0) + (o->progress == PROGRESS_PICTURE ? FILM_WATCH_BYTES_PER_PIXEL : 0);
-    const uint64_t film_bytes = p->memory_film_bytes / (settings->photon_map_file ? 2 : 1); /* which has a copy then */
+    const uint64_t film_bytes =
+        p->memory_film_bytes / (settings->photon_map_file ? 2 : 1); /* with a kept map the film has a copy */
     return (uint64_t)(each * pixels) + (o->page ? film_bytes : 0);
 }
 
@@ -161,7 +162,7 @@ typedef struct picture_run {
     int frame; /* -1: there are no frames */
     char default_name[NAME_SIZE];
     bool is_skipped;   /* for --no-clobber */
-    bool lacks_memory; /* more than there is, or than --memory allows */
+    bool lacks_memory; /* it needs more memory than there is, or than --memory allows */
 } picture_run;
 
 /* Gives a picture without an output file the name that belongs to its scene. */
@@ -171,7 +172,7 @@ static ag_status choose_output(picture_run *r, const ag_scene *scene)
     name_default_output(o, scene, r->frame, r->default_name, sizeof r->default_name);
     o->outfiles[o->outfile_count++] = r->default_name;
     const ag_status status = ag_output_check(r->context, &o->output, r->default_name);
-    if (status != AG_OK) /* the name is the scene's, not the command line's */
+    if (status != AG_OK) /* then the name is from the scene, not from the command line */
         return status == AG_ERROR_ARGUMENT ? AG_ERROR_SCENE : status;
     r->is_skipped = is_there(o);
     return !r->is_skipped && file_conflicts_of_options(o) ? AG_ERROR_ARGUMENT : AG_OK;
@@ -230,7 +231,7 @@ static ag_status load_scene(ag_context *context, const options *o, const ag_scen
     if (!memory_limit_end_watch() || signals_stop() || signals_is_time_up())
         return status;
     ag_context_clear_cancel(context);
-    if (status == AG_OK || status == AG_CANCELLED) { /* it may have come when the scene was there */
+    if (status == AG_OK || status == AG_CANCELLED) { /* a signal may have come once the scene was read */
         ag_scene_destroy(*out_scene);
         *out_scene = NULL;
         return AG_ERROR_MEMORY;
@@ -292,7 +293,7 @@ static ag_status run_in_context(options *o, int frame, progress *told, ag_contex
     ag_context *context;
     ag_status status = ag_context_create(&o->context, &context);
     if (status != AG_OK) {
-        if (status != AG_ERROR_SYSTEM) /* which the log has told */
+        if (status != AG_ERROR_SYSTEM) /* the log has told those */
             fprintf(stderr, "afterglow: error: %s\n", ag_status_text(status));
         return status;
     }
@@ -340,7 +341,7 @@ static ag_status run_frames(options *o, progress *told, ag_context **in_out_last
     for (int i = 0; i < o->frames.count; i++) {
         AG_TRY(run_frame(o, i, told, in_out_last));
         if (signals_stop() && i + 1 < o->frames.count)
-            return AG_CANCELLED; /* the signal came when this frame was complete */
+            return AG_CANCELLED; /* the signal came after this frame was complete */
         if (o->page && page_wishes_has_ended(page_server_wishes(o->page)) && i + 1 < o->frames.count) {
             if (o->verbosity >= 0)
                 fprintf(stderr, "afterglow: stopped by who watched it: %d of %d frames\n", i + 1, o->frames.count);
@@ -374,7 +375,7 @@ static int run_program(int argc, char **argv)
         status = page_server_start(o.serve_address ? o.serve_address : "127.0.0.1", o.serve_port, &told, &o.page);
     if (status == AG_OK)
         status = o.frames.count > 0 ? run_frames(&o, &told, &last) : run_in_context(&o, -1, &told, NULL);
-    progress_finish(&told); /* where no context was made, too */
+    progress_finish(&told); /* also where no context was made */
     ag_context_destroy(last);
     page_server_stop(o.page);
     display_server_stop(o.display);

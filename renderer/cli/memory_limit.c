@@ -127,7 +127,7 @@ void memory_limit_lift(void)
 bool memory_limit_holds(uint64_t bytes, const ag_prediction *p)
 {
     const uint64_t optional = p->memory_optional_bytes, least = p->memory_needed_bytes - optional;
-    if (least <= bytes) /* the peak may be another picture's */
+    if (least <= bytes) /* the peak may be that of an earlier picture */
         return true;
     fprintf(
         stderr,

@@ -117,7 +117,7 @@ static bool has_idle_picture_option(const options *o)
                               : s->look                ? "look"
                               : s->exposure_stops != 0 ? "exposure"
                                                        : NULL;
-    const bool is_shown = o->progress == PROGRESS_PICTURE || o->serves; /* by display and view as well */
+    const bool is_shown = o->progress == PROGRESS_PICTURE || o->serves; /* these show it by display and view */
     if (of_displays && linear_count == o->outfile_count && !is_shown)
         fprintf(stderr, "afterglow: --%s is for pictures that are not .exr, .hdr or .pfm, and there is none\n",
                 of_displays);
@@ -214,7 +214,7 @@ static void describe_options(struct option longs[OPTIONS_MAX + 1], char letters[
 {
     listed_option option;
     size_t count = 0, used = 0;
-    letters[used++] = ':'; /* a value that is missing is told apart */
+    letters[used++] = ':'; /* getopt_long tells a missing value from an unknown option */
     for (; option_at(count, &option); count++) {
         assert(count < OPTIONS_MAX);
         longs[count] = (struct option){option.text->name, option.text->argument ? required_argument : no_argument, NULL,
@@ -270,7 +270,7 @@ options_result options_parse(int argc, char **argv, options *out_options)
     o.typed_names = calloc((size_t)argc + 1, sizeof *o.typed_names);
     o.confined_to = calloc((size_t)argc + 1, sizeof *o.confined_to);
     o.given = calloc((size_t)argc + 1, sizeof *o.given);
-    o.command_line = join_arguments(argc, argv); /* before getopt moves them */
+    o.command_line = join_arguments(argc, argv); /* before getopt_long reorders them */
     if (!o.outfiles || !o.outfile_types || !o.typed_names || !o.confined_to || !o.given || !o.command_line) {
         options_reset(&o);
         return OPTIONS_EXIT_USAGE;
@@ -360,7 +360,7 @@ bool options_override(const options *o, const ag_scene *scene, ag_render_setting
     for (int i = 0; i < o->given_count; i++)
         (void)ag_render_settings_set(settings, o->given[i].name, o->given[i].value); /* options_parse has tried it */
     if (o->render.photon_map_file)
-        settings->photon_map_file = o->render.photon_map_file; /* with the frame's number in it */
+        settings->photon_map_file = o->render.photon_map_file; /* its name has the frame's number in it */
     bool has_own_seed = o->seed_pattern || o->seed_per_frame;
     if (has_own_seed && settings->photon_map_file && settings->photon_seed == AG_PHOTON_SEED_AUTOMATIC)
         settings->photon_seed = settings->seed; /* one map for all frames */

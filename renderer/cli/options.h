@@ -58,8 +58,8 @@ typedef struct options {
     bool seed_per_frame;                 /* the frame's number is added to the seed */
     const char *seed_pattern;            /* the seed, with a placeholder for the frame's number; NULL: there is none */
     int frame;                           /* of one of several pictures, its number */
-    frame_list frames;                   /* none: one picture, whose names are as they stand */
-    const struct options *of_all_frames; /* of one frame's options those that they were made of, borrowed; else NULL */
+    frame_list frames;                   /* empty: one picture, whose names have no placeholders */
+    const struct options *of_all_frames; /* the options of all frames, of which one frame's were made */
     int tile_index, tile_count;          /* from 1 on; 0: the whole */
     double time_limit;                   /* s, 0: none */
     double deadline;                     /* main's, of each picture: when it is reached, in seconds of passes_seconds();

@@ -97,7 +97,7 @@ static ag_status take_film(page_film *f, ag_context *context, const ag_rendering
     f->context = context;
     f->rendering = rendering;
     AG_TRY(ag_color_view_at(context, 0, &display, &view));            /* from here on any thread may ask */
-    return page_film_view(f, "", "", output->exposure_stops, &first); /* what is wrong with it shows at once */
+    return page_film_view(f, "", "", output->exposure_stops, &first); /* so that an error in the view shows at once */
 }
 
 ag_status page_film_show(page_film *f, ag_context *context, const ag_rendering *rendering,

@@ -33,7 +33,7 @@ typedef struct page_film {
     atomic_bool is_wanted_by_main;
     const ag_film *film;           /* borrowed; NULL: there is none */
     ag_context *context;           /* borrowed; NULL: there is none */
-    const ag_rendering *rendering; /* borrowed: that the film is of; NULL: it has ended */
+    const ag_rendering *rendering; /* borrowed: the rendering of the film; NULL: it has ended */
     ag_output_settings output;     /* the command line's: display, view, look, exposure */
     uint64_t turn;                 /* which of the films it is, from 1 on */
     int width, height;

@@ -24,7 +24,7 @@ typedef struct page_notes {
     bool has_place;
     page_place place;  /* of its camera */
     float right[3];    /* to the right in the picture */
-    float fov_degrees; /* 0: it is not one that the command line could ask for */
+    float fov_degrees; /* 0: the camera is not of a kind that --fov describes */
     ag_statistics counts;
 } page_notes;
 

@@ -22,7 +22,7 @@ typedef struct page_wishes {
     bool has_ended;      /* it was wished to stop at some time */
     bool wants_return;   /* from a walk to the picture */
     bool wants_move;     /* to this place */
-    bool wants_layers;   /* that have not been copied from the film */
+    bool wants_layers;   /* to have layers copied from the film */
     page_place place;
     double heard_seconds; /* when there was a request last, as passes_seconds tells it; below 0: never */
 } page_wishes;

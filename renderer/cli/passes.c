@@ -196,7 +196,8 @@ static ag_status serve(passes *p, bool is_after_pass)
 static ag_status end_in_time(passes *p, ag_status status)
 {
     p->cut = AG_END_TIME_LIMIT;
-    if (status == AG_OK || ag_rendering_go_back(p->rendering) == AG_OK) /* whole passes are better, if they are kept */
+    if (status == AG_OK ||
+        ag_rendering_go_back(p->rendering) == AG_OK) /* whole passes are better, where they are kept */
         return AG_OK;
     return ag_rendering_sample_counts(p->rendering).least > 0 ? AG_OK : AG_PAUSED;
 }
@@ -300,7 +301,7 @@ static ag_status render(passes *p, passes_result *out_result, ag_noise *out_nois
 {
     ag_status status = p->o->photons_only ? AG_OK : run_passes(p);
     out_result->is_partial = status == AG_PAUSED;
-    signals_set_deadline(INFINITY); /* what there is is written, however long that takes */
+    signals_set_deadline(INFINITY); /* the picture is written, however long that takes */
     if (status == AG_PAUSED)
         status = AG_OK;
     if (status == AG_ERROR_SYSTEM && ag_rendering_sample_counts(p->rendering).most > 0) {
@@ -324,13 +325,13 @@ static ag_status show(passes *p, ag_film *film, const ag_render_settings *settin
     const bool has_picture = !o->photons_only && (!result->is_partial || result->samples.most > 0);
     ag_status written = AG_OK;
     if (settings->denoise && has_picture) {
-        memory_limit_lift(); /* the prediction does not know what the denoiser takes */
+        memory_limit_lift(); /* the prediction does not cover the denoiser's memory */
         AG_TRY(ag_film_denoise(p->context, film));
     }
     if (has_picture) {
         written = write_pictures(p, film, !result->is_partial && failed == AG_OK);
         AG_TRY(note_unwritten(p, written));
-        progress_leave_film(o->told, true); /* what is said from here on stands below */
+        progress_leave_film(o->told, true); /* messages from here on stand below the picture */
     }
     if (failed != AG_OK) {
         fprintf(stderr, "afterglow: error: the picture is not complete: it has %.4g of %d samples per pixel\n",
@@ -461,7 +462,7 @@ ag_status passes_render(ag_context *context, const options *o, const ag_scene *s
     if (status == AG_OK && !o->photons_only)
         status = show_to_watchers(&p);
     if (status == AG_OK) {
-        signals_begin_rendering(); /* until all is written: what has been rendered is not thrown away */
+        signals_begin_rendering(); /* until all is written, so that no signal loses what was rendered */
         status = render(&p, out_result, &noise, &failed);
     }
     if (status == AG_OK && o->photons_file && !out_result->is_partial && failed == AG_OK)
@@ -469,7 +470,7 @@ ag_status passes_render(ag_context *context, const options *o, const ag_scene *s
     if (status == AG_OK)
         status = write_and_wait(&p, settings, out_result, &noise, failed, films);
     progress_leave_film(o->told, false);
-    leave_watchers(&p); /* when the files are written: they do not wait for a viewer */
+    leave_watchers(&p); /* only once the files are written, which do not wait for a viewer */
     ag_rendering_finish(p.rendering, NULL);
     ag_rendering_finish(p.kept, NULL);
     signals_end_rendering();

@@ -61,7 +61,7 @@ unsigned char *png_picture_encode(const float *pixels, int width, int height, si
     memcpy(header + 4, "IHDR", 4);
     put_u32(header + 8, (size_t)width);
     put_u32(header + 12, (size_t)height);
-    memcpy(header + 16, "\x08\x02\x00\x00\x00", 5); /* 8 bits, RGB, and nothing out of the ordinary */
+    memcpy(header + 16, "\x08\x02\x00\x00\x00", 5); /* 8 bits, RGB, the usual packing and filter, not interlaced */
     end_chunk(header + 4, 13);
     unsigned char *data = header + 25;
     put_u32(data, size);

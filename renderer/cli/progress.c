@@ -26,7 +26,7 @@ static terminal_abilities abilities_of(picture_form form)
     if (form == PICTURE_FORM_SIXELS)
         return (terminal_abilities){true, USUAL_WIDTH, USUAL_HEIGHT, TERMINAL_MOST_COLORS};
     if (form == PICTURE_FORM_AUTO)
-        (void)terminal_query(STDERR_FILENO, &told); /* it has what it has told */
+        (void)terminal_query(STDERR_FILENO, &told); /* what it has learned of the terminal stays in `told` */
     return told;
 }
 
@@ -72,7 +72,7 @@ static void usual_shares(const progress *p, double out_shares[AG_PHASE_COUNT])
 void progress_begin_frame(progress *p, int frame, int frame_count, int frame_number)
 {
     pthread_mutex_lock(&terminal);                        /* progress_read may be asked from elsewhere */
-    if (frame > p->frame && p->phase != AG_PHASE_COUNT) { /* one is over, which was not skipped */
+    if (frame > p->frame && p->phase != AG_PHASE_COUNT) { /* a picture is over that was not skipped */
         for (int i = 0; i < AG_PHASE_COUNT; i++)
             p->learned_seconds[i] += p->phase_seconds[i];
         p->learned_count++;
@@ -126,7 +126,7 @@ static double seconds_left(const progress *p, double fraction, double now)
             is_learned ? p->learned_seconds[i] / p->learned_count : shares[i] * known_seconds / known_shares;
         if (i > (int)p->phase)
             left += whole;
-        else if (!has_pace) /* what has not shown its pace in that time takes at least so long */
+        else if (!has_pace) /* a phase that has shown no pace yet takes at least as long again */
             left += fmax(whole * (1.0 - fraction), took * (1.0 - fraction) / fmax(done, least_fraction));
     }
     for (int i = 0; i < AG_PHASE_COUNT && is_learned; i++)
@@ -183,7 +183,7 @@ static void begin_writing(progress *p)
 {
     pthread_mutex_lock(&terminal);
     signals_begin_drawing();
-    if (signals_take_stopped()) { /* a shell has written below what is drawn */
+    if (signals_take_stopped()) { /* the process was stopped, and a shell has written below what is drawn */
         film_watch_leave(&p->watch);
         p->bar_is_shown = false;
     }
@@ -278,7 +278,7 @@ void progress_tell(void *user, ag_phase phase, double fraction)
         fprintf(stderr, "Progress: %d%% (%s%s%s)\n", percent, frame,
                 phase_text(p, fraction, phase_for, sizeof phase_for), left_text(left, left_for, sizeof left_for));
         break;
-    case PROGRESS_ALF: /* as render queues read it, from standard output */
+    case PROGRESS_ALF: /* the form that render queues read from standard output */
         if (is_new) {
             printf("ALF_PROGRESS %d%%\n", percent);
             fflush(stdout);
@@ -373,7 +373,7 @@ ag_status progress_prepare_film(progress *p, ag_context *context, const ag_outpu
     ag_view *view;
     if (p->style != PROGRESS_PICTURE)
         return AG_OK;
-    AG_TRY(ag_view_create(context, output, &view)); /* it may say something, which takes the lock */
+    AG_TRY(ag_view_create(context, output, &view)); /* it may log a message, which takes the lock */
     pthread_mutex_lock(&terminal);
     film_watch_begin(&p->watch, view, &p->abilities);
     pthread_mutex_unlock(&terminal);

@@ -10,7 +10,7 @@ typedef struct shared_bytes {
     unsigned char *bytes; /* owned, by malloc */
     size_t size;
     unsigned holders;
-    unsigned *living; /* borrowed: how many of its kind there are; or NULL */
+    unsigned *living; /* borrowed: counts the shared bytes of one kind; NULL: not counted */
 } shared_bytes;
 
 /* Makes shared bytes with one holder of bytes that it takes over, on failure too. NULL: no memory. */

@@ -215,7 +215,7 @@ void signals_catch_abort(void)
 
 void signals_catch(ag_context *context)
 {
-    atomic_store(&is_time_up, false); /* for the picture before */
+    atomic_store(&is_time_up, false); /* it was set for the picture before */
     signalled_context = context;
     for (size_t i = 0; i < sizeof STOPPING / sizeof *STOPPING; i++) {
         struct sigaction before, action = {.sa_handler = on_stop, .sa_flags = SA_RESTART};

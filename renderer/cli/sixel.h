@@ -6,7 +6,7 @@
 #include <stdbool.h>
 #include <stdio.h>
 
-enum { SIXEL_BYTES_PER_PIXEL = 32 }; /* that making it takes, about, and its text */
+enum { SIXEL_BYTES_PER_PIXEL = 32 }; /* about what the picture and its text take */
 
 /* Writes the picture where the cursor stands; its place afterwards is the terminal's choice. pixels: RGB, of which
  * [0, 1] is shown, top row first; color_count: 1 to 256. False: there is no memory, and nothing is written. */

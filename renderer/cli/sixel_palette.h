@@ -6,7 +6,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-enum { SIXEL_LEVELS = 101, SIXEL_COLORS_MOST = 256 }; /* a channel is told in per cent */
+enum { SIXEL_LEVELS = 101, SIXEL_COLORS_MOST = 256 }; /* sixels give each channel in per cent */
 
 typedef struct sixel_palette {
     unsigned char colors[SIXEL_COLORS_MOST][3]; /* RGB, per cent */

@@ -108,7 +108,7 @@ int terminal_picture_write_sixels(FILE *file, const float *shown, int width, int
         if (rows != drawn_rows) {
             terminal_picture_erase(file, drawn_rows);
             for (int i = 0; i < rows; i++)
-                fputc('\n', file); /* the terminal scrolls now, so that it does not while it draws */
+                fputc('\n', file); /* makes the terminal scroll now, not while it draws */
         }
         /* terminals differ in where a picture leaves the cursor */
         fprintf(file, "\033[%dA\0337", rows);

@@ -22,7 +22,7 @@ static const char ASK_KIND[] = "\033[c";
  * that the last question is one that it knows. */
 static const char ASK_DETAIL[] = "\033[?1;1;0S\033[16t\033[c";
 
-static volatile sig_atomic_t owed_terminal = -1; /* open, and owes an answer; -1: none does */
+static volatile sig_atomic_t owed_terminal = -1; /* a terminal that is open and has not answered yet; -1: none */
 
 /* A control sequence of an answer: "ESC [ ? 1 ; 2 c" has the mark '?', the numbers 1 and 2, and the end 'c'. */
 typedef struct sequence {

@@ -136,7 +136,7 @@ ag_status walk_run(const walk *w, ag_rendering **out_kept)
     ag_status status = AG_OK;
     bool keeps = false;
     *out_kept = NULL;
-    signals_set_timer(INFINITY); /* checkpoints are the picture's */
+    signals_set_timer(INFINITY); /* checkpoints are of the picture, not of a walk */
     do {
         status = step(w, wishes, &s);
         keeps = status == AG_OK && is_kept(wishes, &s);

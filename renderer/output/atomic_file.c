@@ -29,7 +29,7 @@ static const char TEMPORARY[] = ".afterglow-";
 enum { LETTERS = 6, SUFFIX_LENGTH = sizeof TEMPORARY - 1 + LETTERS };
 enum { LOOK_UP_EVERY_MS = 20 }; /* while a reader is waited for */
 
-static atomic_u32 no_more_waits; /* stands alone, so relaxed */
+static atomic_u32 no_more_waits; /* independent of other data, so relaxed */
 
 /* Returns 0 where a reader may be waited for, else the errno that says why not. run: NULL, or what may be cancelled. */
 static int end_of_waits(const run_context *run)
@@ -258,7 +258,7 @@ static bool lock_temporary(int fd)
 {
     struct stat status;
     if (flock(fd, LOCK_EX | LOCK_NB) != 0)
-        return errno != EWOULDBLOCK; /* there may be no locks: then nobody removes it either */
+        return errno != EWOULDBLOCK; /* a file system without locks: then nobody removes it either */
     return fstat(fd, &status) != 0 || status.st_nlink > 0;
 }
 
@@ -341,7 +341,7 @@ static ag_status begin(const run_context *run, const char *path, output *out, ch
     const char *folder = slash ? resolved : ".";
     out->folder_fd = open(folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
     if (out->folder_fd < 0 && errno == EACCES)
-        out->folder_fd = open(folder, O_PATH | O_DIRECTORY | O_CLOEXEC); /* may be written, not listed */
+        out->folder_fd = open(folder, O_PATH | O_DIRECTORY | O_CLOEXEC); /* it may be writable, though not readable */
     if (out->folder_fd < 0)
         return failure(path, "its folder cannot be opened: ", errno, message, message_size);
     if (exists && faccessat(out->folder_fd, out->name, W_OK, AT_EACCESS) != 0) { /* rename alone would not mind */

@@ -97,13 +97,14 @@ static ag_status filter_picture(const oidn_library *library, oidn_device device,
 {
     size_t w = (size_t)width, h = (size_t)height, bytes = w * h * 3 * sizeof(float);
     float *images[3] = {malloc(bytes), albedo ? malloc(bytes) : NULL, normal ? malloc(bytes) : NULL};
-    oidn_filter filter = library->new_filter(device, "RT"); /* NULL: what follows does nothing, and the device knows */
+    oidn_filter filter =
+        library->new_filter(device, "RT"); /* NULL: calls with it do nothing, and the device has the error */
     bool fits = images[0] && (!albedo || images[1]) && (!normal || images[2]);
     if (fits) {
         library->set_image(filter, "color", color, OIDN_FLOAT3, w, h, 0, 0, 0);
         library->set_image(filter, "output", images[0], OIDN_FLOAT3, w, h, 0, 0, 0);
         if (albedo) {
-            memcpy(images[1], albedo, bytes); /* the interface does not promise to leave it as it is */
+            memcpy(images[1], albedo, bytes); /* a copy, since the interface does not promise to leave it as it is */
             library->set_image(filter, "albedo", images[1], OIDN_FLOAT3, w, h, 0, 0, 0);
         }
         if (normal) {

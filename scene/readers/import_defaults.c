@@ -64,7 +64,7 @@ ag_status import_add_default_camera(scene *s, log_sink *log)
     vec3 low, high;
     double axes[3][3], center[3] = {0.0, 0.0, 0.0}, half[3] = {1.0, 1.0, 1.0}, m[4][4] = {{0.0}};
     if (s->request && (s->request->has_camera || s->request->camera_name))
-        return AG_OK; /* the one that is asked for is set, or missed, by scene_overrides */
+        return AG_OK; /* scene_overrides sets the camera that is asked for, or refuses */
     s->world_from_upright = scene_overrides_upright(s);
     default_axes(&s->world_from_upright, axes);
     AG_TRY(scene_find_bounds(s, NULL, &low, &high));

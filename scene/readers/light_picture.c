@@ -80,7 +80,7 @@ static ag_status take(const scene *s, const char *name, const char *path, image 
                        .height = (uint32_t)picture.height,
                        .pixels = rgb_pixels(&picture),
                        .is_first_of_several = picture.is_first_of_several};
-    image_reset(&picture); /* as soon as can be: large ones are a gigabyte */
+    image_reset(&picture); /* freed as soon as possible, since it may take a gigabyte */
     if (!p.pixels)
         return AG_ERROR_MEMORY;
     if (colors.space)

@@ -14,7 +14,7 @@ typedef struct light_picture {
     uint32_t width, height;
     rgb *pixels;              /* from malloc, top row first; finite and not negative; the caller's */
     bool is_first_of_several; /* its file holds other pictures, which are not used */
-    size_t bad_count;         /* of them, that were not so in the file, and are 0 in what was wrong */
+    size_t bad_count;         /* pixels that were not so in the file: what was wrong in them is 0 */
 } light_picture;
 
 /* Reads the picture of that path, which messages call name. run: whose inputs say what may be read, and which ends

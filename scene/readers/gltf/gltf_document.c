@@ -37,7 +37,7 @@ static ag_status parse_json(gltf_reader *r, const char *json, size_t size, bool 
 {
     char excerpt[320] = "";
     json_error_t error;
-    if (size >= 3 && memcmp(json, "\xef\xbb\xbf", 3) == 0) /* the byte order mark of UTF-8 says nothing */
+    if (size >= 3 && memcmp(json, "\xef\xbb\xbf", 3) == 0) /* skips the byte order mark of UTF-8 */
         json += 3, size -= 3;
     r->root = json_loadb(json, size, 0, &error);
     if (!r->root) {

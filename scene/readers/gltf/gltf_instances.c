@@ -99,7 +99,7 @@ ag_status gltf_add_node_mesh(gltf_reader *r, const gltf_value *node, uint32_t me
     AG_TRY(add_node_mesh(r, node, mesh_index, world_from_node));
     AG_TRY(gltf_get_item(r, GLTF_MESHES, mesh_index, &mesh_item));
     const char *mesh_name = name_of(&mesh_item), *node_name = name_of(node);
-    for (uint32_t i = shape_count; i < r->scene->shape_count; i++) /* of what stands in the world itself */
+    for (uint32_t i = shape_count; i < r->scene->shape_count; i++) /* names of shapes in the world itself */
         AG_TRY(scene_set_name(r->scene, NAMED_SHAPE, i, node_name ? node_name : mesh_name));
     for (uint32_t i = object_count; i < r->scene->object_count; i++) /* which several nodes share */
         AG_TRY(scene_set_name(r->scene, NAMED_OBJECT, i, mesh_name));

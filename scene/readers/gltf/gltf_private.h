@@ -68,14 +68,14 @@ typedef struct gltf_material {
     rgb radiance;           /* black: it does not shine */
     uint32_t radiance_texture;
     bool is_two_sided; /* shines from both sides */
-    bool only_glows;   /* by a picture that is no brighter than white, as signs and displays are: not to see by */
+    bool only_glows;   /* it glows by a picture no brighter than white, as a sign or a display: that lights no scene */
 } gltf_material;
 
 /* How many nodes have a mesh, and the object that it is for them. */
 typedef struct gltf_mesh_use {
     uint32_t node_count;
     bool is_made;
-    uint32_t object_index; /* index in the scene; SCENE_NO_OBJECT: it is empty */
+    uint32_t object_index; /* the scene's object; SCENE_NO_OBJECT: it is empty */
 } gltf_mesh_use;
 
 /* A node's transform to world space: affine, of any rank. Row, column. */
@@ -216,7 +216,7 @@ uint32_t gltf_accessor_get_index(const gltf_accessor *a, uint32_t i);
 typedef struct gltf_pose {
     gltf_matrix world_from_mesh;
     bool is_mirror;
-    gltf_value weights;  /* of morph targets: numbers, as many as they like */
+    gltf_value weights;  /* of morph targets: numbers, of any count */
     gltf_matrix *joints; /* of a skin: world_from_mesh by each; owned */
     uint32_t joint_count;
 } gltf_pose;
@@ -267,7 +267,7 @@ bool gltf_matrix_cofactors(const gltf_matrix *matrix, double out_cofactors[3][3]
 typedef enum gltf_mesh_part { GLTF_ALL_PARTS, GLTF_DARK_PART, GLTF_SHINING_PART } gltf_mesh_part;
 
 typedef struct gltf_destination {
-    gltf_mesh_part part;   /* which primitives, by whether their materials shine */
+    gltf_mesh_part part;   /* which primitives to add, by whether their materials shine */
     uint32_t object_index; /* the scene's; SCENE_NO_OBJECT: the world itself */
 } gltf_destination;
 
@@ -282,7 +282,7 @@ ag_status gltf_add_node_mesh(gltf_reader *r, const gltf_value *node, uint32_t me
 typedef struct gltf_triangles {
     uint32_t *indices; /* 3 per triangle, below the count of vertices; owned */
     uint32_t count;
-    bool is_strip; /* triangles without area are meant to be there */
+    bool is_strip; /* a strip: triangles without area are meant to be there */
 } gltf_triangles;
 
 /* Finds the corners. *out_triangles is to be freed; its count is 0 for points and lines, which a warning names. */

@@ -62,7 +62,7 @@ static bool take_library_line(library *l, const char *line)
         l->items = larger;
         l->items[l->count] = (extra){.type = -1};
         if (!get_attribute(line, " id=", l->items[l->count].id, sizeof l->items->id))
-            l->items[l->count].id[0] = '\0'; /* nobody names it, but what follows is of it */
+            l->items[l->count].id[0] = '\0'; /* no node can refer to it, but the lines that follow belong to it */
         l->count++;
         return true;
     }

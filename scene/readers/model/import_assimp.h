@@ -19,7 +19,7 @@ typedef struct assimp_writer {
     bool is_sound;            /* all could be written */
     bool is_blenders, is_fbx; /* the file is by Blender's exporter of Collada or FBX */
     bool has_dimming_spots;
-    float units_per_metre;    /* of such a one: to one of Blender's units of length */
+    float units_per_metre;    /* by Blender's exporter: the file's units in one of Blender's */
     blender_lamps lamps;      /* of such a one, of Collada */
     blender_shifts shifts;    /* of such a one */
     bool has_plain_shining;   /* a material shines */

@@ -127,7 +127,7 @@ static ag_status add_lamp(importer *i, const import_surface *surface, uint32_t s
     l.as.area.shape_index = shape_index;
     l.as.area.radiance = surface->radiance;
     l.as.area.radiance_texture = surface->radiance_texture;
-    l.as.area.two_sided = true; /* these formats know no side that is dark */
+    l.as.area.two_sided = true; /* these formats know no lamp with a dark side */
     return scene_add_light(i->scene, &l, &index);
 }
 

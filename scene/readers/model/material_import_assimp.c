@@ -87,7 +87,7 @@ static void restore_surface_of_fbx(const struct aiMaterial *m, import_material *
  * at normal incidence. Returns whether this is such a one. */
 static bool restore_surface_of_collada(const struct aiMaterial *m, import_material *out)
 {
-    if (out->ior <= 0.0f || out->ior == 1.0f) /* assimp's, where the file has none */
+    if (out->ior <= 0.0f || out->ior == 1.0f) /* the value of assimp where the file has none */
         return false;
     out->metallic = fminf(fmaxf(get_float(m, AI_MATKEY_REFLECTIVITY, 0.0f), 0.0f), 1.0f);
     out->roughness = 0.5f;

@@ -233,7 +233,7 @@ static ag_status read_statement(reader *r, const text_word *word)
     for (size_t k = 0; k < sizeof PICTURES / sizeof *PICTURES; k++)
         if (text_word_is(word, PICTURES[k].name))
             return read_picture(r, PICTURES[k].slot);
-    if (text_word_is(word, "disp") || text_word_is(word, "map_disp")) /* heights, which "bump" tells too, and better */
+    if (text_word_is(word, "disp") || text_word_is(word, "map_disp")) /* heights, which "bump" gives, too, and better */
         return r->now->pictures[IMPORT_BUMP].path[0] ? AG_OK : read_picture(r, IMPORT_BUMP);
     if (!is_one_of(word, NO_CONCERN)) {
         char key[64];

@@ -42,7 +42,7 @@ typedef struct parameter {
     unsigned char *bools;
     bool is_borrowed; /* numbers, strings and bools are another's, who outlives this one: not to be written to */
     bool looked_up;
-    bool may_be_unused; /* it is for whom it may concern: an Attribute's */
+    bool may_be_unused; /* it is an Attribute's, which need not fit every directive */
     bool *used;         /* set by parameter_list_warn_unused where it was looked up; borrowed; NULL: nobody asks */
 } parameter;
 

@@ -114,7 +114,7 @@ ag_status pbrt_settle_film(pbrt_parser *parser)
     AG_TRY(pbrt_get_integer_hint(parser, film, "yresolution", 1, 65536, &hints->height));
     AG_TRY(parameter_get_string(film, parser->log, "filename", &file_name));
     AG_TRY(parameter_get_bool(film, parser->log, "savefp16", &is_half));
-    AG_TRY(parameter_get_float(film, parser->log, "diagonal", &diagonal)); /* a realistic camera's concern */
+    AG_TRY(parameter_get_float(film, parser->log, "diagonal", &diagonal)); /* only realistic cameras need it */
     AG_TRY(read_window(parser, film, hints));
     hints->has_float_samples = !is_half;
     hints->file_name = file_name ? strdup(file_name) : NULL;

@@ -93,7 +93,7 @@ static double mean_of(const double *values, size_t count, size_t components, siz
 static void tell_stand_in(pbrt_parser *parser, const parameter_list *list, const char *type, const char *stand_in)
 {
     char key[64];
-    snprintf(key, sizeof key, "medium:%s:%c", type, stand_in[0]); /* "as any others": of those that get the same */
+    snprintf(key, sizeof key, "medium:%s:%c", type, stand_in[0]); /* one key for each stand-in */
     log_at_once(parser->log, AG_LOG_WARNING, list->where, key,
                 "media of type \"%s\" are not supported: \"%s\" %s, as do any others", type, list->name, stand_in);
 }
