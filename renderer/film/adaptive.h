@@ -11,7 +11,7 @@
 #include "film/film.h"
 #include "run_context.h"
 
-/* The number of samples up to which pixels are brought now: the next one at which it is decided. */
+/* Returns the number of samples up to which pixels are brought now: the next one at which it is decided. */
 uint32_t adaptive_barrier(const struct ag_film *film);
 
 /* Decides anew how many samples each pixel is to have. Called when all pixels have had the samples of the last

@@ -29,22 +29,23 @@ typedef struct cryptomatte_slot {
     int32_t signed_count;
 } cryptomatte_slot;
 
-/* Errors: AG_ERROR_MEMORY. */
+/* Makes the hashes and the manifest of the scene's objects or materials. Errors: AG_ERROR_MEMORY. */
 ag_status cryptomatte_create(const scene *s, cryptomatte_kind kind, cryptomatte *out_matte);
 void cryptomatte_reset(cryptomatte *matte);
 
-/* The name of the thing with that id, which is its hash's bits, cut where it is longer than size - 1 bytes. False:
- * there is none. */
+/* Gives the name of the thing with that id, which is its hash's bits, cut where it is longer than size - 1 bytes.
+ * Returns false where there is none. */
 bool cryptomatte_name(const cryptomatte *matte, float id, char *out_name, size_t size);
 
-/* A sample of the thing of that number, from 1 on. slots: the pixel's [CRYPTOMATTE_SLOTS]. */
+/* Adds a sample of the thing of that number, from 1 on. sign: 1 or -1, of the pixel filter. slots: the pixel's
+ * [CRYPTOMATTE_SLOTS]; where all have other things the sample is left out. */
 void cryptomatte_add(const cryptomatte *matte, uint32_t id, int sign, cryptomatte_slot *slots);
 
-/* The id as a float, and its share, of that rank from 0 on; 0 and 0 where there are not so many. total: the pixel's
- * samples, signs summed. */
+/* Gives the id as a float, and its share, [0, 1], of that rank from 0 on; 0 and 0 where there are not so many. total:
+ * the pixel's samples, signs summed. */
 void cryptomatte_rank(const cryptomatte_slot *slots, int rank, int64_t total, float *out_id, float *out_coverage);
 
-/* The name's hash with an exponent that is neither 0 nor that of infinity. */
+/* Returns the name's hash with an exponent that is neither 0 nor that of infinity. */
 uint32_t cryptomatte_hash(const char *name);
 
 #endif

@@ -79,14 +79,14 @@ typedef struct eye_sample {
     sample_layers *layers;                          /* NULL: radiance alone is asked for */
 } eye_sample;
 
-/* The factor that bounds light to a largest component. */
+/* Returns the factor that bounds light to a largest component. */
 static inline float eye_bound(float most, rgb brought)
 {
     float largest = rgb_max(brought);
     return largest > most ? most / largest : 1.0f;
 }
 
-/* The factor, mostly 1, that bounds light scattered so many times between lamp and eye (--clamp-direct,
+/* Returns the factor, mostly 1, that bounds light scattered so many times between lamp and eye (--clamp-direct,
  * --clamp-indirect). share: the path's share of the sample, where a path was split; all of them together bring no more
  * than one would. */
 static inline float eye_sample_bound(const eye_sample *s, float share, int scatterings, rgb brought)
@@ -115,12 +115,13 @@ static inline rgb *light_group_sums_begin(light_group_sums *sums, bool is_wanted
     return sums->of_group;
 }
 
+/* Adds light of a group's lamps to a sample that has layers. */
 static inline void eye_sample_add_group(eye_sample *s, uint32_t group, rgb brought)
 {
     s->layers->groups[group] = rgb_add(s->layers->groups[group], brought);
 }
 
-/* by_group NULL: nothing. */
+/* Adds light by groups, times the throughput. by_group: of light_group_sums_begin; NULL: nothing is done. */
 static inline void eye_sample_add_groups(eye_sample *s, const rgb *by_group, rgb throughput)
 {
     for (uint32_t i = 0; by_group && i <= LIGHT_GROUPS_MAX; i++)

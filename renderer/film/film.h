@@ -83,19 +83,19 @@ static inline size_t film_area_count(const struct ag_film *film)
 
 static inline size_t film_crop_count(const struct ag_film *film) { return (size_t)film->width * (size_t)film->height; }
 
-/* The number of doubles among the sums that belong to a pixel. */
+/* Returns the number of doubles among the sums that belong to a pixel. */
 static inline size_t film_sums_of_pixel(const struct ag_film *film)
 {
     return (size_t)film->layout.sum_count * (film->filter.has_signs ? 2 : 1);
 }
 
-/* The number in the area of a pixel of the full picture. */
+/* Returns the number in the area of a pixel of the full picture. */
 static inline size_t film_pixel_at(const struct ag_film *film, int x, int y)
 {
     return (size_t)(y - film->area.y0) * (size_t)film->area.width + (size_t)(x - film->area.x0);
 }
 
-/* The number in the area of a pixel of the crop, by its number there. */
+/* Returns the number in the area of a pixel of the crop, by its number there. */
 static inline size_t film_pixel_of_crop(const struct ag_film *film, size_t pixel)
 {
     size_t width = (size_t)film->width;
@@ -120,14 +120,15 @@ typedef struct film_plane {
 enum { FILM_PLANES_MAX = 8 + FILM_VIEW_COUNT + CRYPTOMATTE_KIND_COUNT };
 int film_planes(struct ag_film *film, film_plane out_planes[FILM_PLANES_MAX]);
 
-/* The number, row by row, of the block that a pixel of the full picture lies in, among those that the area touches. */
+/* Returns the number, row by row, of the block that a pixel of the full picture lies in, among those that the area
+ * touches. */
 size_t film_block_number(const struct ag_film *film, int x, int y);
 
-/* A block's pixels, those of the area alone, by its column and row there. */
+/* Returns a block's pixels, those of the area alone, by its column and row there. */
 film_area film_block_at(const struct ag_film *film, int column, int row);
 
-/* Whether a trial leaves a pixel out. Its blocks form a lattice that is spread evenly: Korobov, "The approximate
- * computation of multiple integrals", 1959. */
+/* Returns whether a trial leaves a pixel out. Its blocks form a lattice that is spread evenly: Korobov, "The
+ * approximate computation of multiple integrals", 1959. */
 static inline bool film_is_left_out(const struct ag_film *film, size_t pixel)
 {
     size_t width = (size_t)film->area.width;
@@ -135,7 +136,7 @@ static inline bool film_is_left_out(const struct ag_film *film, size_t pixel)
     return film->trial_step > 1 && (column + film->trial_turn * row) % film->trial_step != film->trial_first;
 }
 
-/* The number of samples that a pixel is to have in a pass that brings all to `all`. */
+/* Returns the number of samples that a pixel is to have in a pass that brings all to `all`. */
 static inline uint32_t film_goal(const struct ag_film *film, size_t pixel, uint32_t all)
 {
     if (film_is_left_out(film, pixel))

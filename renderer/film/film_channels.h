@@ -12,7 +12,7 @@ void film_develop(const struct ag_film *film, size_t pixel, float out[3]);
 /* Reads a channel of the layout from a resolved film: width * height floats, stride apart. */
 void film_read_channel(const struct ag_film *film, int channel, float *out, size_t stride);
 
-/* The means of a sum of 3 that the layout has, packed: 3 floats a pixel. */
+/* Reads the means of a sum of 3 that the layout has: width * height pixels, packed, 3 floats each. */
 void film_read_sum(const struct ag_film *film, film_sum sum, float *out);
 
 #endif

@@ -15,13 +15,13 @@ typedef struct film_response {
     color_matrix develop; /* exposure and white balance */
 } film_response;
 
-/* space: of the radiance and of the film. */
+/* Returns the response of the settings. space: of the radiance and of the film. */
 film_response film_response_make(const ag_render_settings *settings, const working_space *space);
 
-/* A sample that is too bright, scaled down. Asked for only where is_bounded. */
+/* Returns a sample's radiance, scaled down where it is too bright. Called only where is_bounded. */
 rgb film_response_bound(const film_response *response, rgb radiance);
 
-/* The mean of the samples as the film holds it. Asked for only where not is_plain. */
+/* Develops a radiance, the mean of samples or one of them, in place. Called only where not is_plain. */
 void film_response_develop(const film_response *response, double pixel[3]);
 
 #endif

@@ -7,7 +7,7 @@
 
 #include "film/film.h"
 
-/* All tiles of a picture, which is black. NULL when out of memory. */
+/* Makes all tiles of a picture of that many pixels, which is black. Returns NULL when out of memory. */
 film_tiles *film_tiles_create(int width, int height);
 void film_tiles_destroy(film_tiles *tiles); /* NULL is fine */
 

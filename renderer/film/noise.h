@@ -22,25 +22,27 @@ typedef struct noise_lattice {
     double *sums; /* [rows * columns][NOISE_VALUES]; owned */
 } noise_lattice;
 
-/* Errors: AG_ERROR_MEMORY. */
+/* Makes a lattice without samples over an area of that many pixels. Errors: AG_ERROR_MEMORY. */
 ag_status noise_lattice_create(int width, int height, noise_lattice *out_lattice);
 void noise_lattice_reset(noise_lattice *lattice);
+
+/* Returns the size of its sums. */
 size_t noise_lattice_bytes(const noise_lattice *lattice);
 
-/* Whether the lattice holds a pixel, by its number in the area. */
+/* Returns whether the lattice holds a pixel, by its number in the area. */
 static inline bool noise_lattice_holds(const noise_lattice *lattice, size_t pixel)
 {
     int x = (int)(pixel % (size_t)lattice->width), y = (int)(pixel / (size_t)lattice->width);
     return x % lattice->stride == 0 && y % lattice->stride == 0;
 }
 
-/* A sample of such a pixel, which has layers. */
+/* Adds a sample of such a pixel; the sample has layers. */
 void noise_lattice_add(noise_lattice *lattice, const film_response *response, size_t pixel, const eye_sample *sample);
 
-/* The variance of what is shown of a value that is known with this variance; white is 1. */
+/* Returns the variance of what is shown of a value with this mean and variance; white is 1. */
 double noise_shown_variance(double mean, double variance);
 
-/* The ratio of shown values to the film's, by the settings' exposure. */
+/* Returns the ratio of shown values to the film's, by the settings' exposure. */
 static inline double noise_shown_scale(const ag_render_settings *settings)
 {
     return exp2((double)settings->shown_exposure_stops);
@@ -55,8 +57,8 @@ typedef struct noise_summary {
     bool is_caustic_grain;               /* most of the caustics' share does not get less by more samples */
 } noise_summary;
 
-/* scale: noise_shown_scale. caustic_nearest: photons of a caustic's estimate, whose grain counts
- * as the caustics' noise; 0: there is no caustic map. The level is without the grain. */
+/* Returns how noisy the lattice's pixels are. scale: noise_shown_scale. caustic_nearest: photons of a caustic's
+ * estimate, whose grain counts as the caustics' noise; 0: there is no caustic map. The level is without the grain. */
 noise_summary noise_lattice_read(const noise_lattice *lattice, double scale, int caustic_nearest);
 
 #endif

@@ -18,11 +18,11 @@ typedef struct pixel_filter {
     double mean_sign;                        /* of a sample, (0, 1] */
 } pixel_filter;
 
-/* is_centered: no jitter, whatever the filter. Errors: AG_ERROR_SCENE (nothing is left of it: the Gaussian is too
- * narrow for its table, or negative lobes cancel the rest). */
+/* Tabulates the filter. is_centered: no jitter, whatever the filter. Errors: AG_ERROR_SCENE, with a message (nothing is
+ * left of it: the Gaussian is too narrow for its table, or negative lobes cancel the rest). */
 ag_status pixel_filter_create(const filter_hint *hint, bool is_centered, log_sink *log, pixel_filter *out_filter);
 
-/* Offset from the pixel's centre, in pixels; u in [0,1)^2. *out_sign is 1 or -1. */
+/* Returns an offset from the pixel's centre, in pixels; u in [0,1)^2. *out_sign: 1 or -1. */
 vec2 pixel_filter_sample(const pixel_filter *filter, vec2 u, int *out_sign);
 
 /* Sums of the samples of a pixel by their sign. */
@@ -31,8 +31,9 @@ typedef struct pixel_sum {
     uint32_t positive_count, negative_count;
 } pixel_sum;
 
-/* The pixel: the samples with their signs over the sum of the signs, as in pbrt, so that what is even stays even. Where
- * by chance the signs all but cancel out, which would multiply the noise, only the positive samples count. */
+/* Gives the pixel, of one sample or more: the samples with their signs over the sum of the signs, as in pbrt, so that
+ * what is even stays even. Where by chance the signs all but cancel out, which would multiply the noise, only the
+ * positive samples count. */
 void pixel_filter_resolve(const pixel_filter *filter, const pixel_sum *sum, double out_pixel[3]);
 
 #endif

@@ -40,10 +40,10 @@ void split_prior_reset(split_prior *prior);
 bool sample_split_is_open(const ag_render_settings *settings, bool splits_samples);
 /* Returns whether blocks choose again by their own samples: then a film holds all pixels of its blocks. */
 bool sample_split_goes_on(const ag_render_settings *settings, bool splits_samples);
-/* The counts of every sample where blocks do not choose, and of the first samples where they do. */
+/* Returns the counts of every sample where blocks do not choose, and of the first samples where they do. */
 split_counts sample_split_first(const ag_render_settings *settings);
 
-/* The most rays of either kind that a sample may have. */
+/* Returns the largest of each count that a sample may have. */
 split_counts sample_split_most(const ag_render_settings *settings, bool splits_samples);
 
 /* Adds a sample that was split by the sums' counts. */
