@@ -3,7 +3,8 @@
 #
 # ag_check_includes(TARGET [FOLDER...]): the sources of TARGET, and the headers beside them, include what lies in the
 # target's own folders (those of its sources, and each FOLDER that holds headers alone) and in those of the targets that
-# it links, as far as these pass them on. To be called after target_link_libraries.
+# it links, as far as these pass them on. Both forms count, in quotes and in angle brackets. To be called after
+# target_link_libraries.
 #
 # Within a target, the edges of `cut` below are forbidden as well: FOLDER OR FILE -> HEADER, as regular expressions.
 if(NOT CMAKE_SCRIPT_MODE_FILE)
@@ -104,10 +105,21 @@ set(cut
 set(is_wrong FALSE)
 foreach(file ${files})
   cmake_path(GET file PARENT_PATH own_folder)
-  file(STRINGS ${file} lines REGEX "^[ \t]*#[ \t]*include[ \t]+\"")
+  file(STRINGS ${file} lines REGEX "^[ \t]*#[ \t]*(include|import)")
+  string(REGEX REPLACE "[][]" "" lines "${lines}") # in a list, brackets would join lines
   foreach(line ${lines})
-    string(REGEX REPLACE "^[^\"]*\"([^\"]*)\".*" "\\1" name "${line}")
-    foreach(root ${own_folder} ${roots})
+    if(NOT line MATCHES "^[ \t]*#[ \t]*[a-z_]+[ \t]*([\"<])([^\">]*)[\">]")
+      cmake_path(RELATIVE_PATH file BASE_DIRECTORY ${ROOT} OUTPUT_VARIABLE from)
+      message(SEND_ERROR "${from}: an include by a macro, which cannot be checked: ${line}")
+      set(is_wrong TRUE)
+      continue()
+    endif()
+    set(name ${CMAKE_MATCH_2})
+    set(searched ${roots})
+    if(CMAKE_MATCH_1 STREQUAL "\"")
+      list(PREPEND searched ${own_folder})
+    endif()
+    foreach(root ${searched})
       cmake_path(SET header NORMALIZE "${root}/${name}")
       if(EXISTS ${header})
         cmake_path(GET header PARENT_PATH folder)
