@@ -41,14 +41,15 @@ typedef enum ag_layer {
      * light. */
     AG_LAYER_PHOTON_DENSITY = 1 << 17, /* photon_density.V: photons per area, 1/m^2 */
     AG_LAYER_CACHE_STATE = 1 << 18,    /* cache_state.V: of the nearest photon: 1 its irradiance was not requested, 2 it
-                                          was;    0: no photon is near */
+                                          was; 0: no photon is near */
     AG_LAYER_PHOTON_DISTANCE = 1 << 19, /* photon_distance.V: distance of that photon, scene units */
     AG_LAYER_GATHER_DISTANCE = 1 << 20, /* gather_distance.V: length of the gather rays, harmonic mean, scene units */
+    /* tile_time.V: seconds that the pixel's tile took; differs from run to run. */
+    AG_LAYER_TILE_TIME = 1 << 21,
     /* Cryptomatte of objects (instances, glTF nodes, files of meshes) and of materials, by their names in the scene, or
      * by numbers where they have none; six ranks. */
     AG_LAYER_CRYPTO_OBJECT = 1 << 22,
-    AG_LAYER_CRYPTO_MATERIAL = 1 << 23,
-    AG_LAYER_TILE_TIME = 1 << 21 /* tile_time.V: seconds that the pixel's tile took; differs from run to run */
+    AG_LAYER_CRYPTO_MATERIAL = 1 << 23
 } ag_layer;
 #define AG_LAYERS_LIGHT (AG_LAYER_EMISSION | AG_LAYER_DIRECT | AG_LAYER_INDIRECT | AG_LAYER_CAUSTIC | AG_LAYER_SPECULAR)
 /* All layers that are the same from run to run, under this library's names: without GBUFFER and TILE_TIME. */
