@@ -32,6 +32,7 @@ if(NOT CMAKE_SCRIPT_MODE_FILE)
     endforeach()
     list(REMOVE_DUPLICATES folders)
     foreach(folder ${folders})
+      # No list: a header that one forgets would not be checked.
       file(GLOB headers CONFIGURE_DEPENDS ${folder}/*.h)
       list(APPEND files ${headers})
     endforeach()

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Each public header stands alone, as C17 and as C++17, without a warning; and the library exports exactly the functions
-# that they declare.
+# Each public header is listed, to be installed, and stands alone, as C17 and as C++17, without a warning; and the library
+# exports exactly the functions that they declare.
 set -euo pipefail
 # shellcheck source=tests/fixtures/shell_test.sh
 source "$(dirname "${BASH_SOURCE[0]}")/../fixtures/shell_test.sh"
@@ -9,6 +9,7 @@ includes=(-I "$root/renderer/include" -I "$root/threads/include")
 warnings=(-Wall -Wextra -Wshadow -Wconversion -Wundef -pedantic -Werror)
 
 for header in "${headers[@]}"; do
+    grep -q "include/$header\>" "$root/renderer/CMakeLists.txt" || fail "renderer/CMakeLists.txt does not list $header"
     # Twice: the guard. The header first: it needs nothing before it.
     printf '#include "%s"\n#include "%s"\nint main(void) { return 0; }\n' "$header" "$header" | tee "$folder/use.c" >"$folder/use.cpp"
     "$CC" -std=c17 "${warnings[@]}" -Wstrict-prototypes "${includes[@]}" -fsyntax-only "$folder/use.c"
