@@ -46,7 +46,7 @@ static ag_status add_checkerboard(scene *s, bool is_spectrum, rgb even, rgb odd,
     t.mapping.scale = (vec2){6.0f, 6.0f};
     t.inputs[0] = (texture_input){SCENE_NO_TEXTURE, even};
     t.inputs[1] = (texture_input){SCENE_NO_TEXTURE, odd};
-    return scene_add_texture(s, &t, out_index);
+    return texture_set_add(&s->textures, &t, out_index);
 }
 
 static ag_status add_materials(scene *s, parts *out)

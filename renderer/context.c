@@ -279,7 +279,7 @@ void ag_context_prediction_fill(const ag_context *context, void *out_prediction,
 
 void context_count_textures(ag_context *context, const scene *s)
 {
-    const texture_store_counts c = texture_store_count(s->texture_store);
+    const texture_store_counts c = texture_store_count(s->textures.store);
     ag_statistics *out = &context->statistics;
     out->texture_whole_bytes = c.whole_bytes;
     out->texture_tile_bytes = c.tile_bytes_most;
@@ -290,19 +290,19 @@ void context_count_textures(ag_context *context, const scene *s)
 ag_status context_check_textures(ag_context *context, const scene *s)
 {
     context_count_textures(context, s);
-    for (uint32_t i = 0; i < s->texture_image_count; i++)
-        if (s->texture_images[i]->udim)
-            texture_udim_tell_missed(s->texture_images[i], context->log);
-    for (uint32_t i = 0; i < s->texture_image_count; i++) {
-        const texture_image *picture = s->texture_images[i];
+    for (uint32_t i = 0; i < s->textures.image_count; i++)
+        if (s->textures.images[i]->udim)
+            texture_udim_tell_missed(s->textures.images[i], context->log);
+    for (uint32_t i = 0; i < s->textures.image_count; i++) {
+        const texture_image *picture = s->textures.images[i];
         const char *problem = picture->file ? texture_file_levels_problem(picture->file) : NULL;
         if (problem) {
             log_message(context->log, AG_LOG_ERROR, "'%s' %s", picture->path, problem);
             return AG_ERROR_INPUT;
         }
     }
-    for (uint32_t i = 0; i < s->texture_image_count; i++) {
-        const texture_image *picture = s->texture_images[i];
+    for (uint32_t i = 0; i < s->textures.image_count; i++) {
+        const texture_image *picture = s->textures.images[i];
         if (picture->kept && texture_kept_is_damaged(picture->kept)) {
             log_message(context->log, AG_LOG_ERROR,
                         "'%s': its tiles in the folder of --texture-cache are damaged, and are removed: start again",
@@ -310,7 +310,7 @@ ag_status context_check_textures(ag_context *context, const scene *s)
             return AG_ERROR_INPUT; /* no picture is made of them */
         }
     }
-    const ag_status status = texture_store_state(s->texture_store);
+    const ag_status status = texture_store_state(s->textures.store);
     if (status == AG_ERROR_MEMORY)
         log_message(context->log, AG_LOG_ERROR, "out of memory for tiles of textures");
     else if (status != AG_OK)

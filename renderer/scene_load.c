@@ -125,8 +125,8 @@ ag_status scene_prepare(ag_context *context, const char *name, const scene_reque
     const color_config *colors;
     AG_TRY(context_color_config(context, &colors));
     s->space = context->working_space;
-    s->color_config = colors;
-    s->request = request;
+    s->textures.colors.config = colors;
+    scene_set_request(s, request);
     const char *wrong;
     if (!context->is_confined || input_files_confine(inputs, name, (const char *const *)(void *)context->confined_to,
                                                      context->confined_count, &wrong))
@@ -141,7 +141,7 @@ ag_status scene_complete(ag_context *context, scene *s)
 {
     const phase_begin begin = context_begin_phase();
     s->definitions = NULL; /* all three were borrowed */
-    s->request = NULL;
+    scene_set_request(s, NULL);
     AG_TRY(scene_commit(s, &context->run, context->isa));
     context_end_phase(context, AG_PHASE_BVH, begin);
     context_count_textures(context, s);

@@ -3,6 +3,7 @@
 #define _POSIX_C_SOURCE 200809L
 #include "scene.h"
 
+#include "array_grow.h"
 #include "closed_room.h"
 #include "light/light_pick.h"
 #include "material/bsdf.h"
@@ -25,6 +26,7 @@ scene *scene_create(void)
     scene *s = calloc(1, sizeof *s);
     if (s) {
         s->space = working_space_rec709();
+        s->textures.colors.space = &s->space;
         s->hints = scene_hints_default();
         s->bounds_min = (vec3){INFINITY, INFINITY, INFINITY};
         s->bounds_max = (vec3){-INFINITY, -INFINITY, -INFINITY};
@@ -43,9 +45,7 @@ void scene_destroy(scene *s)
         shape_reset(&s->shapes[i]);
     for (uint32_t i = 0; i < s->light_count; i++)
         light_reset(&s->lights[i]);
-    for (uint32_t i = 0; i < s->texture_image_count; i++)
-        texture_image_destroy(s->texture_images[i]);
-    texture_store_destroy(s->texture_store);
+    texture_set_reset(&s->textures);
     for (uint32_t i = 0; i < s->file_name_count; i++)
         free(s->file_names[i]);
     for (uint32_t i = 0; i < s->light_group_count; i++)
@@ -68,8 +68,6 @@ void scene_destroy(scene *s)
     for (uint32_t i = 0; i < s->medium_count; i++)
         medium_reset(&s->media[i]);
     free(s->media);
-    free(s->textures);
-    free(s->texture_images);
     free(s->lights);
     light_pick_reset(s);
     free(s);
@@ -94,19 +92,20 @@ ag_status scene_light_group(scene *s, const char *name, uint32_t *out_index)
     return AG_OK;
 }
 
-/* Makes room for one more item in an array that has doubled whenever its count reached a power of two. */
-static bool grow(void **items, uint32_t count, size_t item_bytes)
+void scene_set_request(scene *s, const scene_request *request)
 {
-    if (count & (count - 1))
-        return true;
-    if (count > UINT32_MAX / 4)
-        return false;
-    size_t capacity = count ? 2 * (size_t)count : 1;
-    void *larger = realloc(*items, capacity * item_bytes);
-    if (!larger)
-        return false;
-    *items = larger;
-    return true;
+    s->request = request;
+    s->textures.limits = (texture_limits){0};
+    if (request)
+        s->textures.limits = (texture_limits){.memory_bytes = request->texture_memory_bytes,
+                                              .cache = request->texture_cache,
+                                              .cache_bytes = request->texture_cache_bytes};
+}
+
+void scene_set_before(scene *s, scene *before)
+{
+    s->before = before;
+    s->textures.before = before ? &before->textures : NULL;
 }
 
 const char *scene_intern_file_name(scene *s, const char *name)
@@ -115,7 +114,7 @@ const char *scene_intern_file_name(scene *s, const char *name)
         if (strcmp(s->file_names[i], name) == 0)
             return s->file_names[i];
     char *copy = strdup(name);
-    if (!copy || !grow((void **)&s->file_names, s->file_name_count, sizeof *s->file_names)) {
+    if (!copy || !array_grow((void **)&s->file_names, s->file_name_count, sizeof *s->file_names)) {
         free(copy);
         return NULL;
     }
@@ -130,7 +129,7 @@ static ag_status give_table(scene *s, material *m)
         return AG_OK;
     material_table *table = material_table_find(s->material_tables, s->material_table_count, m);
     if (!table) {
-        if (!grow((void **)&s->material_tables, s->material_table_count, sizeof *s->material_tables))
+        if (!array_grow((void **)&s->material_tables, s->material_table_count, sizeof *s->material_tables))
             return AG_ERROR_MEMORY;
         material_table *before =
             s->before ? material_table_find(s->before->material_tables, s->before->material_table_count, m) : NULL;
@@ -145,7 +144,7 @@ static ag_status give_table(scene *s, material *m)
 
 ag_status scene_add_material(scene *s, const material *item, uint32_t *out_index)
 {
-    if (!grow((void **)&s->materials, s->material_count, sizeof *s->materials))
+    if (!array_grow((void **)&s->materials, s->material_count, sizeof *s->materials))
         return AG_ERROR_MEMORY;
     material *m = &s->materials[s->material_count];
     *m = *item;
@@ -155,56 +154,9 @@ ag_status scene_add_material(scene *s, const material *item, uint32_t *out_index
     return AG_OK;
 }
 
-/* Half a pixel of a picture that lies on uv; of others what pbrt takes where it knows no better. */
-static float own_step(const scene *s, const texture *t)
-{
-    static const float STEP = 0.0005f, STEP_MIN = 1e-5f, STEP_MAX = 0.25f;
-    if (t->kind == TEXTURE_CONSTANT || t->kind == TEXTURE_SCALE || t->kind == TEXTURE_MIX)
-        return STEP_MAX; /* no finer than their inputs */
-    if (t->kind != TEXTURE_IMAGE || t->mapping.kind != TEXTURE_MAPPING_UV)
-        return STEP;
-    const texture_image *picture = s->texture_images[t->image_index];
-    float pixels =
-        fmaxf(fabsf(t->mapping.scale.x) * (float)picture->width, fabsf(t->mapping.scale.y) * (float)picture->height);
-    return pixels > 0.0f ? fminf(fmaxf(0.5f / pixels, STEP_MIN), STEP_MAX) : STEP_MAX;
-}
-
-ag_status scene_add_texture(scene *s, const texture *item, uint32_t *out_index)
-{
-    uint32_t cost = 1;
-    float step = own_step(s, item);
-    for (size_t i = 0; i < sizeof item->inputs / sizeof *item->inputs; i++)
-        if (item->inputs[i].texture_index != SCENE_NO_TEXTURE) {
-            const texture *input = &s->textures[item->inputs[i].texture_index];
-            cost += input->cost; /* each is at most TEXTURE_MAX_COST */
-            step = fminf(step, input->step);
-        }
-    if (cost > TEXTURE_MAX_COST)
-        return AG_ERROR_SCENE;
-    if (!grow((void **)&s->textures, s->texture_count, sizeof *s->textures))
-        return AG_ERROR_MEMORY;
-    *out_index = s->texture_count;
-    s->textures[s->texture_count] = *item;
-    s->textures[s->texture_count].step = step;
-    s->textures[s->texture_count].cost = cost;
-    texture_find_pictures(s, &s->textures[s->texture_count++]);
-    return AG_OK;
-}
-
-ag_status scene_add_texture_image(scene *s, texture_image *item, uint32_t *out_index)
-{
-    if (!grow((void **)&s->texture_images, s->texture_image_count, sizeof *s->texture_images)) {
-        texture_image_destroy(item);
-        return AG_ERROR_MEMORY;
-    }
-    *out_index = s->texture_image_count;
-    s->texture_images[s->texture_image_count++] = item;
-    return AG_OK;
-}
-
 ag_status scene_add_medium(scene *s, const medium *item, uint32_t *out_index)
 {
-    if (!grow((void **)&s->media, s->medium_count, sizeof *s->media)) {
+    if (!array_grow((void **)&s->media, s->medium_count, sizeof *s->media)) {
         medium copy = *item;
         medium_reset(&copy);
         return AG_ERROR_MEMORY;
@@ -217,7 +169,7 @@ ag_status scene_add_medium(scene *s, const medium *item, uint32_t *out_index)
 ag_status scene_add_object_shape(scene *s, uint32_t object_index, const shape *item, uint32_t *out_index)
 {
     shape copy = *item;
-    if (!grow((void **)&s->shapes, s->shape_count, sizeof *s->shapes)) {
+    if (!array_grow((void **)&s->shapes, s->shape_count, sizeof *s->shapes)) {
         shape_reset(&copy);
         return AG_ERROR_MEMORY;
     }
@@ -253,7 +205,7 @@ ag_status scene_add_shape(scene *s, const shape *item, uint32_t *out_index)
 
 ag_status scene_add_object(scene *s, uint32_t *out_index)
 {
-    if (!grow((void **)&s->objects, s->object_count, sizeof *s->objects))
+    if (!array_grow((void **)&s->objects, s->object_count, sizeof *s->objects))
         return AG_ERROR_MEMORY;
     *out_index = s->object_count;
     s->objects[s->object_count++] = (scene_object){0, 0};
@@ -266,11 +218,11 @@ ag_status scene_add_instance(scene *s, uint32_t object_index, const affine *step
     for (uint32_t i = 0; i < step_count; i++)
         if (!affine_can_be_undone(&steps[i]))
             return AG_ERROR_SCENE;
-    if (!grow((void **)&s->instances, s->instance_count, sizeof *s->instances))
+    if (!array_grow((void **)&s->instances, s->instance_count, sizeof *s->instances))
         return AG_ERROR_MEMORY;
     scene_instance added = {object_index, s->instance_step_count, step_count};
     for (uint32_t i = 0; i < step_count; i++) {
-        if (!grow((void **)&s->instance_steps, s->instance_step_count, sizeof *s->instance_steps))
+        if (!array_grow((void **)&s->instance_steps, s->instance_step_count, sizeof *s->instance_steps))
             return AG_ERROR_MEMORY;
         s->instance_steps[s->instance_step_count++] = steps[i];
     }
@@ -281,7 +233,7 @@ ag_status scene_add_instance(scene *s, uint32_t object_index, const affine *step
 
 ag_status scene_add_light(scene *s, const light *item, uint32_t *out_index)
 {
-    if (!grow((void **)&s->lights, s->light_count, sizeof *s->lights)) {
+    if (!array_grow((void **)&s->lights, s->light_count, sizeof *s->lights)) {
         light copy = *item;
         light_reset(&copy);
         return AG_ERROR_MEMORY;

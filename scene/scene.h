@@ -17,40 +17,33 @@
 #include "shape/instance.h"
 #include "shape/shape.h"
 #include "text/definitions.h"
-#include "texture/texture.h"
+#include "texture/texture_set.h"
 
 struct bvh;
 struct slab_faces;
-struct color_config;
 struct light_tree;
 
 enum { SCENE_LIGHT_GROUPS_MAX = 32 };
 
-/* Counts of what a commit has made, and what it has kept of the scene before. */
+/* Counts of what a commit has made, and what it has kept of the scene before; textures count their own pictures. */
 typedef struct scene_reuse {
     uint64_t trees_built, trees_kept; /* of the world and of objects */
-    uint64_t pictures_read, pictures_kept;
+    uint64_t light_pictures_read, light_pictures_kept;
 } scene_reuse;
 
 typedef struct scene {
-    working_space space;                     /* of all its colours; settled before anything is read */
-    const struct color_config *color_config; /* names the space, and tells how pictures are encoded; borrowed while the
-                                                scene is read; NULL: none */
-    const definitions *definitions;          /* of names in its text; borrowed while it is read; NULL: none */
-    const scene_request *request;            /* borrowed for as long as it is read; NULL: nothing is asked for */
+    working_space space;            /* of all its colours; settled before anything is read */
+    const definitions *definitions; /* of names in its text; borrowed while it is read; NULL: none */
+    const scene_request *request;   /* borrowed while it is read; NULL: nothing is asked for; see scene_set_request */
     /* The scene that this one replaces after edits: its pictures, tables and trees are shared where they would be the
-     * same. Borrowed until the commit is done; or NULL. */
+     * same. Borrowed until the commit is done; or NULL; see scene_set_before. */
     struct scene *before;
     scene_reuse reuse;
     material *materials;
     uint32_t material_count;
     struct material_table **material_tables; /* that materials keep beside their values (material/material_table.h) */
     uint32_t material_table_count;
-    texture *textures;
-    uint32_t texture_count;
-    texture_image **texture_images; /* those that textures refer to, each file and encoding once */
-    uint32_t texture_image_count;
-    texture_store *texture_store; /* of those that are too large for memory; NULL: memory is not limited */
+    texture_set textures; /* textures.colors.config is borrowed while the scene is read */
     shape *shapes;
     uint32_t shape_count;
     scene_object *objects; /* what their shapes are is told by the shapes */
@@ -111,18 +104,16 @@ typedef struct scene {
 scene *scene_create(void);    /* NULL when out of memory */
 void scene_destroy(scene *s); /* NULL is fine */
 
+/* Sets what is asked of the scene beyond what its file says, and which scene it replaces; NULL: nothing, none. */
+void scene_set_request(scene *s, const scene_request *request);
+void scene_set_before(scene *s, scene *before);
+
 /* Returns the interned copy of a file name; NULL when out of memory. */
 const char *scene_intern_file_name(scene *s, const char *name);
 
 /* Each adds a copy of *item and writes its index. The scene takes over a mesh's arrays, on failure too, when they are
  * freed. Errors: AG_ERROR_MEMORY. */
 ag_status scene_add_material(scene *s, const material *item, uint32_t *out_index);
-/* A texture's inputs must have been added before. Errors: AG_ERROR_MEMORY, AG_ERROR_SCENE (it costs more than
- * TEXTURE_MAX_COST). */
-ag_status scene_add_texture(scene *s, const texture *item, uint32_t *out_index);
-/* For texture_image_load, which first looks for an equal picture. The scene takes the picture over, on failure too,
- * when it is destroyed. */
-ag_status scene_add_texture_image(scene *s, texture_image *item, uint32_t *out_index);
 /* Finds the light group of a name, or adds it; "default" must be the first. Errors: AG_ERROR_MEMORY, AG_ERROR_SCENE
  * (more than SCENE_LIGHT_GROUPS_MAX; nothing is logged). */
 ag_status scene_light_group(scene *s, const char *name, uint32_t *out_index);

@@ -160,12 +160,12 @@ hash128 scene_hash_of_light(const scene *s)
     hash128 begun = hash128_begin(), *h = &begun;
     ADD(s->space.primaries); /* of the working space, which all colours are of */
     ADD(s->space.white);
-    ADD(s->texture_image_count);
-    for (uint32_t i = 0; i < s->texture_image_count; i++)
-        add_image(h, s->texture_images[i]);
-    ADD(s->texture_count);
-    for (uint32_t i = 0; i < s->texture_count; i++)
-        add_texture(h, &s->textures[i]);
+    ADD(s->textures.image_count);
+    for (uint32_t i = 0; i < s->textures.image_count; i++)
+        add_image(h, s->textures.images[i]);
+    ADD(s->textures.count);
+    for (uint32_t i = 0; i < s->textures.count; i++)
+        add_texture(h, &s->textures.items[i]);
     ADD(s->material_count);
     for (uint32_t i = 0; i < s->material_count; i++)
         add_material(h, &s->materials[i]);
@@ -214,10 +214,10 @@ hash128 scene_hash_of_passed_surfaces(const scene *s)
         has_alpha = has_alpha || s->shapes[i].alpha_texture != SCENE_NO_TEXTURE;
     ADD(s->has_interfaces);
     ADD(has_alpha);
-    for (uint32_t i = 0; (has_alpha || s->has_interfaces) && i < s->texture_image_count; i++)
-        add_image(h, s->texture_images[i]);
-    for (uint32_t i = 0; (has_alpha || s->has_interfaces) && i < s->texture_count; i++)
-        add_texture(h, &s->textures[i]);
+    for (uint32_t i = 0; (has_alpha || s->has_interfaces) && i < s->textures.image_count; i++)
+        add_image(h, s->textures.images[i]);
+    for (uint32_t i = 0; (has_alpha || s->has_interfaces) && i < s->textures.count; i++)
+        add_texture(h, &s->textures.items[i]);
     for (uint32_t i = 0; s->has_interfaces && i < s->material_count; i++)
         add_material(h, &s->materials[i]);
     return begun;

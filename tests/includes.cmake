@@ -75,7 +75,8 @@ file(READ ${STAMP}.files files)
 file(READ ${STAMP}.folders allowed)
 set(roots threads threads/include scene scene/readers photonmap renderer renderer/include tests perf)
 list(TRANSFORM roots PREPEND ${ROOT}/)
-# Surfaces and textures know points (surface.h) and rays (ray.h), not the tree nor how rays are cast. Below them, each
+# Surfaces and textures know points (surface.h) and rays (ray.h), not the tree nor how rays are cast; textures are a set
+# of their own (texture_set.h), which knows no scene. Below them, each
 # folder of ag_image knows those before it: math and text, color, image. Materials know nothing of lights, nor the other
 # way round; what casts rays knows no lights. A format's reader knows no other's, but that meshes of pbrt may be PLY
 # files. What finds the light knows nothing of pictures' files. The programs take name_hash.h, status.h and utf8.h from
@@ -86,7 +87,7 @@ set(cut
   "^scene/(math|text)/.*->scene/(color|image)/"
   "^scene/math/.*->scene/text/"
   "^scene/color/.*->scene/image/"
-  "^scene/texture/.*->scene/(shape|material|light|rays)/"
+  "^scene/texture/.*->scene/((shape|material|medium|light|rays)/|scene\\.h$|scene_.*\\.h$|camera\\.h$)"
   "^scene/shape/.*->scene/(material|light)/"
   "^scene/material/.*->scene/light/"
   "^scene/light/.*->scene/material/"
@@ -101,7 +102,7 @@ set(cut
   "^renderer/output/.*->renderer/cli/"
   "^renderer/cli/.*->threads/([a-hj-mo-rtv-z]|i[^n]|n[^a]|s[^t]|st[^a]|u[^t])"
   "^scene/(surface|rays/ray|rays/rays)\\.h->scene/scene\\.h$"
-  "^scene/(shape|texture)/[a-z_]+\\.h->scene/scene\\.h$"
+  "^scene/shape/[a-z_]+\\.h->scene/scene\\.h$"
   "^scene/scene\\.h->scene/rays/(bvh|rays|transmittance)\\.h$")
 set(is_wrong FALSE)
 foreach(file ${files})

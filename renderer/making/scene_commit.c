@@ -52,9 +52,9 @@ static ag_status run_plan(scene_making *making, scene *before, scene **out_scene
     scene *s = *out_scene = scene_create();
     AG_TRY(s ? context_color_config(context, &colors) : AG_ERROR_MEMORY);
     s->space = context->working_space;
-    s->color_config = colors;
-    s->request = &making->request;
-    s->before = before;
+    s->textures.colors.config = colors;
+    scene_set_request(s, &making->request);
+    scene_set_before(s, before);
     pbrt_builder *builder = pbrt_builder_create(&context->run, s);
     ag_status status = builder ? scene_plan_run(&making->plan, &context->run, builder) : AG_ERROR_MEMORY;
     if (status == AG_OK)
@@ -92,8 +92,8 @@ static void count_commit(scene_making *making, const scene *s)
     making->counts.commits++;
     making->counts.trees_built += s->reuse.trees_built;
     making->counts.trees_kept += s->reuse.trees_kept;
-    making->counts.pictures_read += s->reuse.pictures_read;
-    making->counts.pictures_kept += s->reuse.pictures_kept;
+    making->counts.pictures_read += s->textures.read_count + s->reuse.light_pictures_read;
+    making->counts.pictures_kept += s->textures.kept_count + s->reuse.light_pictures_kept;
 }
 
 /* Commits a scene that can be changed. On failure the scene is what its last commit made, without the edits since. */
@@ -116,7 +116,7 @@ static ag_status commit_plan(ag_scene *made)
         }
         return status;
     }
-    s->before = NULL;
+    scene_set_before(s, NULL);
     scene_destroy(before);
     made->s = s;
     making->s = NULL;

@@ -90,7 +90,7 @@ static ag_status begin_meshes(scene_making *making)
     if (!making->mesh_scene)
         return AG_ERROR_MEMORY;
     making->mesh_scene->space = making->s->space;
-    making->mesh_scene->request = &making->request;
+    scene_set_request(making->mesh_scene, &making->request);
     making->meshes = pbrt_builder_create(&making->context->run, making->mesh_scene);
     return making->meshes ? AG_OK : AG_ERROR_MEMORY;
 }

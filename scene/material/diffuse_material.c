@@ -47,7 +47,7 @@ static bool both_have_base(const scene *s, const material *m)
 
 static float bound_of_color(const scene *s, rgb color, uint32_t texture_index)
 {
-    return texture_index == SCENE_NO_TEXTURE ? rgb_max(color) : s->textures[texture_index].most;
+    return texture_index == SCENE_NO_TEXTURE ? rgb_max(color) : s->textures.items[texture_index].most;
 }
 
 /* Where reflectance and transmittance together are above 1 they are scaled down: the mean of that is not that of

@@ -78,7 +78,7 @@ const material *material_resolve_mix(const scene *s, const material *m, const su
         float u = (float)(hash >> 40) * 0x1p-24f;
         float amount = m->mix_amount;
         if (m->mix_amount_texture != SCENE_NO_TEXTURE)
-            amount = texture_evaluate_float(s, m->mix_amount_texture, hit);
+            amount = texture_evaluate_float(&s->textures, m->mix_amount_texture, hit);
         m = &s->materials[m->mixed[u < amount ? 1 : 0]];
     }
     return m;

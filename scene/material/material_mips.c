@@ -39,7 +39,7 @@ static ag_status make_of_picture(scene *s, run_context *run, texture_image *i)
 /* Makes the levels of the pictures in a texture that is filtered, or a part of one that is. */
 static ag_status make_of_texture(scene *s, run_context *run, uint32_t index)
 {
-    const texture *t = &s->textures[index];
+    const texture *t = &s->textures.items[index];
     if (t->kind == TEXTURE_CHECKERBOARD) {
         s->filters_textures = true;
         return AG_OK;
@@ -47,7 +47,7 @@ static ag_status make_of_texture(scene *s, run_context *run, uint32_t index)
     if (!t->has_pictures || !t->is_spectrum)
         return AG_OK;
     if (t->kind == TEXTURE_IMAGE)
-        return make_of_picture(s, run, s->texture_images[t->image_index]);
+        return make_of_picture(s, run, s->textures.images[t->image_index]);
     ag_status status = AG_OK;
     for (size_t i = 0; i < sizeof t->inputs / sizeof *t->inputs && status == AG_OK; i++)
         if (t->inputs[i].texture_index != SCENE_NO_TEXTURE)
@@ -64,7 +64,7 @@ ag_status material_mips_make(scene *s, run_context *run)
             continue;
         const uint32_t colors[] = {m->reflectance_texture, m->transmittance_texture};
         for (int i = 0; i < 2 && status == AG_OK; i++)
-            if (colors[i] != SCENE_NO_TEXTURE && texture_is_filtered(&s->textures[colors[i]]))
+            if (colors[i] != SCENE_NO_TEXTURE && texture_is_filtered(&s->textures.items[colors[i]]))
                 status = make_of_texture(s, run, colors[i]);
     }
     return status;

@@ -28,7 +28,7 @@ static rgb clamp_to_unit(rgb v)
 void material_look_up_color(const material_lookup *at, uint32_t texture_index, rgb *in_out_color)
 {
     if (texture_index != SCENE_NO_TEXTURE)
-        *in_out_color = clamp_to_unit(texture_filtered_rgb(at->s, texture_index, at->hit, at->footprint));
+        *in_out_color = clamp_to_unit(texture_filtered_rgb(&at->s->textures, texture_index, at->hit, at->footprint));
 }
 
 void material_look_up_facets(const material_lookup *at, const material *m, uint32_t texture_u, uint32_t texture_v,
@@ -38,7 +38,7 @@ void material_look_up_facets(const material_lookup *at, const material *m, uint3
     float *const alphas[] = {&facets->alpha_u, &facets->alpha_v};
     for (int i = 0; i < 2; i++)
         if (textures[i] != SCENE_NO_TEXTURE) {
-            float value = fmaxf(0.0f, texture_evaluate_float(at->s, textures[i], at->hit));
+            float value = fmaxf(0.0f, texture_evaluate_float(&at->s->textures, textures[i], at->hit));
             *alphas[i] = m->remaps_roughness ? sqrtf(value) : value;
         }
     material_make_rough_on_both_axes(&facets->alpha_u, &facets->alpha_v);
@@ -56,12 +56,12 @@ void material_look_up_metal(const material_lookup *at, const material *m, float 
             from_air);
     }
     if (m->eta_texture != SCENE_NO_TEXTURE) {
-        rgb eta = texture_evaluate_rgb(at->s, m->eta_texture, at->hit);
+        rgb eta = texture_evaluate_rgb(&at->s->textures, m->eta_texture, at->hit);
         *in_out_eta =
             rgb_scale(rgb_make(fmaxf(eta.r, ETA_MIN), fmaxf(eta.g, ETA_MIN), fmaxf(eta.b, ETA_MIN)), from_air);
     }
     if (m->k_texture != SCENE_NO_TEXTURE) {
-        rgb k = texture_evaluate_rgb(at->s, m->k_texture, at->hit);
+        rgb k = texture_evaluate_rgb(&at->s->textures, m->k_texture, at->hit);
         *in_out_k = rgb_scale(rgb_make(fmaxf(k.r, 0.0f), fmaxf(k.g, 0.0f), fmaxf(k.b, 0.0f)), from_air);
     }
 }

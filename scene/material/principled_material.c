@@ -67,7 +67,7 @@ static void init_point(const material *m, material_point *p) { p->principled = p
 static void multiply(const material_lookup *at, uint32_t texture_index, float *in_out_factor)
 {
     if (texture_index != SCENE_NO_TEXTURE && *in_out_factor != 0.0f)
-        *in_out_factor *= texture_evaluate_float(at->s, texture_index, at->hit);
+        *in_out_factor *= texture_evaluate_float(&at->s->textures, texture_index, at->hit);
 }
 
 static void look_up(const material_lookup *at, const material *m, material_point *out)
@@ -76,19 +76,21 @@ static void look_up(const material_lookup *at, const material *m, material_point
     rgb specular_color = m->specular_color;
     float roughness = m->roughness, roughness_v = m->roughness_v, anisotropy = m->anisotropy;
     if (m->reflectance_texture != SCENE_NO_TEXTURE)
-        p->reflectance =
-            rgb_mul(p->reflectance, texture_filtered_rgb(at->s, m->reflectance_texture, at->hit, at->footprint));
+        p->reflectance = rgb_mul(
+            p->reflectance, texture_filtered_rgb(&at->s->textures, m->reflectance_texture, at->hit, at->footprint));
     if (m->specular_color_texture != SCENE_NO_TEXTURE)
-        specular_color = rgb_mul(specular_color, texture_evaluate_rgb(at->s, m->specular_color_texture, at->hit));
+        specular_color =
+            rgb_mul(specular_color, texture_evaluate_rgb(&at->s->textures, m->specular_color_texture, at->hit));
     if (m->sheen_texture != SCENE_NO_TEXTURE && !rgb_is_black(m->sheen))
-        p->sheen = rgb_mul(p->sheen, texture_evaluate_rgb(at->s, m->sheen_texture, at->hit));
+        p->sheen = rgb_mul(p->sheen, texture_evaluate_rgb(&at->s->textures, m->sheen_texture, at->hit));
 #define MULTIPLY_SHARE(name) multiply(at, m->name##_texture, &p->name);
     PRINCIPLED_SHARE_LIST(MULTIPLY_SHARE)
 #undef MULTIPLY_SHARE
     multiply(at, m->roughness_texture, &roughness);
     multiply(at, m->anisotropy_texture, &anisotropy);
     if (m->roughness_v_texture != SCENE_NO_TEXTURE && roughness_v > 0.0f)
-        roughness_v = fmaxf(0.0f, roughness_v * texture_evaluate_float(at->s, m->roughness_v_texture, at->hit));
+        roughness_v =
+            fmaxf(0.0f, roughness_v * texture_evaluate_float(&at->s->textures, m->roughness_v_texture, at->hit));
     p->facets = principled_facets(roughness, roughness_v, anisotropy);
     principled_resolve(p, specular_color);
 }

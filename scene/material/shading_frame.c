@@ -30,7 +30,7 @@ static frame frame_along(vec3 z, vec3 tangent)
 static vec3 map_normal(const scene *s, const surface_hit *hit, const material *m)
 {
     vec3 dpdu, dpdv;
-    rgb c = texture_evaluate_rgb(s, m->normal_map_texture, hit);
+    rgb c = texture_evaluate_rgb(&s->textures, m->normal_map_texture, hit);
     vec3 v = {m->normal_scale * (2.0f * c.r - 1.0f), m->normal_scale * (2.0f * c.g - 1.0f), 2.0f * c.b - 1.0f};
     surface_tangents(s, hit, &dpdu, &dpdv);
     frame f = frame_along(hit->shading_normal, dpdu);
@@ -46,7 +46,7 @@ static float displacement_beside(const scene *s, const surface_hit *hit, const s
     beside.uv.x += du;
     beside.uv.y += dv;
     beside.position = vec3_add_scaled(vec3_add_scaled(hit->position, d->dpdu, du), d->dpdv, dv);
-    return texture_evaluate_float(s, index, &beside);
+    return texture_evaluate_float(&s->textures, index, &beside);
 }
 
 /* The normal of the surface p + d n. Its tangents are dp + dd n + d dn; slopes are those between points before and
@@ -56,7 +56,8 @@ static vec3 bump_normal(const scene *s, const surface_hit *hit, const material *
     surface_differentials d = surface_differentials_at(s, hit);
     vec3 n = hit->shading_normal;
     uint32_t index = m->displacement_texture;
-    float step = s->textures[index].step, height = texture_evaluate_float(s, index, hit), rise_u, rise_v;
+    float step = s->textures.items[index].step, height = texture_evaluate_float(&s->textures, index, hit), rise_u,
+          rise_v;
     rise_u = displacement_beside(s, hit, &d, index, step, 0.0f) - displacement_beside(s, hit, &d, index, -step, 0.0f);
     rise_v = displacement_beside(s, hit, &d, index, 0.0f, step) - displacement_beside(s, hit, &d, index, 0.0f, -step);
     /* the shading normal's own tangents, as pbrt has it: a smooth mesh stays smooth where nothing is raised */
@@ -91,7 +92,7 @@ static frame turn(const scene *s, const surface_hit *hit, const material *m, fra
     float sine, cosine;
     sincos_turns(m->grain_turn, &sine, &cosine);
     if (m->grain_texture != SCENE_NO_TEXTURE) {
-        const rgb c = texture_evaluate_rgb(s, m->grain_texture, hit);
+        const rgb c = texture_evaluate_rgb(&s->textures, m->grain_texture, hit);
         const float x = 2.0f * c.r - 1.0f, y = 2.0f * c.g - 1.0f, length = sqrtf(x * x + y * y);
         if (length > 0.0f && isfinite(length)) {
             const float turned = (cosine * x - sine * y) / length;

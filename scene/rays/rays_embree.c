@@ -56,7 +56,7 @@ static void fill_hit(const scene *s, const scene_ray *ray, const ray_meeting *me
     out_hit->instance_index = SCENE_NO_INSTANCE;
     vec3 position = vec3_add_scaled(ray->origin, ray->direction, met->distance);
     const shape *at = &s->shapes[met->geometry];
-    if (ray->skips_uv && s->texture_count == 0)
+    if (ray->skips_uv && s->textures.count == 0)
         shape_hit_at(at, met->primitive, met->u, met->v, position, ray->direction, ray->time, out_hit);
     else
         shape_surface_at(at, met->primitive, met->u, met->v, position, ray->direction, ray->time, out_hit);

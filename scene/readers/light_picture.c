@@ -57,11 +57,12 @@ static ag_status describe_failure(ag_status status, const char *name, const char
 static ag_status take(const scene *s, const char *name, const char *path, image picture, bool is_gray,
                       light_picture *out_picture, char *message, size_t message_size)
 {
+    const image_colors_target *target = &s->textures.colors;
     char reason[512] = "";
     image_colors colors = {0};
     ag_status status = image_fill_window(&picture, path, reason, sizeof reason);
     if (status == AG_OK && !is_gray)
-        status = image_colors_find(s, image_colors_rule(s, path), &picture, &colors, reason, sizeof reason);
+        status = image_colors_find(target, image_colors_rule(target, path), &picture, &colors, reason, sizeof reason);
     if (status == AG_OK && !colors.space)
         status = image_linearize(&picture, colors.encoding, reason, sizeof reason);
     if (status != AG_OK) {
@@ -84,7 +85,7 @@ static ag_status take(const scene *s, const char *name, const char *path, image 
     if (!p.pixels)
         return AG_ERROR_MEMORY;
     if (colors.space)
-        status = image_colors_decode(s, &colors, &p.pixels->r, count, reason, sizeof reason);
+        status = image_colors_decode(target, &colors, &p.pixels->r, count, reason, sizeof reason);
     if (status != AG_OK) {
         free(p.pixels);
         return describe_failure(status, name, reason, message, message_size);
@@ -140,7 +141,7 @@ environment *light_picture_find_kept(scene *s, const char *name, uint64_t versio
     for (uint32_t i = 0; s->before && version != 0 && i < s->before->light_count; i++) {
         environment *e = light_picture_of(&s->before->lights[i]);
         if (e && e->name && e->version == version && e->is_gray == is_gray && strcmp(e->name, name) == 0) {
-            s->reuse.pictures_kept++;
+            s->reuse.light_pictures_kept++;
             return environment_hold(e);
         }
     }
@@ -149,7 +150,7 @@ environment *light_picture_find_kept(scene *s, const char *name, uint64_t versio
 
 void light_picture_note(scene *s, const char *name, uint64_t version, bool is_gray, environment *e)
 {
-    s->reuse.pictures_read++;
+    s->reuse.light_pictures_read++;
     e->name = strdup(name); /* without memory it is read anew */
     e->version = version;
     e->is_gray = is_gray;

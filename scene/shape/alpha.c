@@ -8,7 +8,7 @@ float alpha_at(const scene *s, const shape *at, const surface_hit *hit)
 {
     float alpha = at->alpha;
     if (at->alpha_texture != SCENE_NO_TEXTURE)
-        alpha *= texture_evaluate_float(s, at->alpha_texture, hit);
+        alpha *= texture_evaluate_float(&s->textures, at->alpha_texture, hit);
     if (at->alpha_cutoff > 0.0f)
         return alpha >= at->alpha_cutoff ? 1.0f : 0.0f;
     return fminf(fmaxf(alpha, 0.0f), 1.0f);

@@ -3,7 +3,6 @@
 
 #include "color/color.h"
 #include "image/image.h"
-#include "scene.h"
 #include "status.h"
 
 static const double SAME = 1e-4; /* of a matrix that is the unit matrix but for rounding */
@@ -16,38 +15,38 @@ static void set_matrix(const double m[9], image_colors *c)
     }
 }
 
-static void set_from_rec709(const scene *s, const color_matrix *to_rec709, image_colors *c)
+static void set_from_rec709(const image_colors_target *target, const color_matrix *to_rec709, image_colors *c)
 {
-    color_matrix m = color_matrix_multiply(&s->space.from_rec709, to_rec709);
+    color_matrix m = color_matrix_multiply(&target->space->from_rec709, to_rec709);
     double rows[9];
     for (int i = 0; i < 9; i++)
         rows[i] = m.m[i / 3][i % 3];
     set_matrix(rows, c);
 }
 
-image_encoding image_colors_rule(const scene *s, const char *path)
+image_encoding image_colors_rule(const image_colors_target *target, const char *path)
 {
-    const char *space = s->color_config ? color_config_rule(s->color_config, path) : NULL;
+    const char *space = target->config ? color_config_rule(target->config, path) : NULL;
     return space ? (image_encoding){.curve = IMAGE_CURVE_SPACE, .space = space, .is_rule = true} : (image_encoding){0};
 }
 
-bool image_colors_parse(const scene *s, const char *text, image_encoding *out_encoding, char *message,
-                        size_t message_size)
+bool image_colors_parse(const image_colors_target *target, const char *text, image_encoding *out_encoding,
+                        char *message, size_t message_size)
 {
     if (image_encoding_parse(text, out_encoding))
         return true;
-    const char *space = s->color_config ? color_config_find_space(s->color_config, text, message, message_size) : NULL;
+    const char *space = target->config ? color_config_find_space(target->config, text, message, message_size) : NULL;
     if (space)
         *out_encoding = (image_encoding){.curve = IMAGE_CURVE_SPACE, .space = space};
     return space;
 }
 
-static ag_status find_by_space(const scene *s, image_encoding encoding, bool is_integer, image_colors *c, char *message,
-                               size_t message_size)
+static ag_status find_by_space(const image_colors_target *target, image_encoding encoding, bool is_integer,
+                               image_colors *c, char *message, size_t message_size)
 {
     color_curve curve;
     double m[9];
-    AG_TRY(color_config_study_space(s->color_config, encoding.space, message, message_size, &curve, m));
+    AG_TRY(color_config_study_space(target->config, encoding.space, message, message_size, &curve, m));
     if (curve == COLOR_CURVE_SRGB && is_integer)
         c->encoding.curve = IMAGE_CURVE_SRGB;
     else if (curve == COLOR_CURVE_DATA || curve == COLOR_CURVE_LINEAR)
@@ -59,8 +58,8 @@ static ag_status find_by_space(const scene *s, image_encoding encoding, bool is_
     return AG_OK;
 }
 
-ag_status image_colors_find(const scene *s, image_encoding encoding, const image *picture, image_colors *out_colors,
-                            char *message, size_t message_size)
+ag_status image_colors_find(const image_colors_target *target, image_encoding encoding, const image *picture,
+                            image_colors *out_colors, char *message, size_t message_size)
 {
     image_colors c = {.encoding = encoding};
     const bool is_integer = picture->type == IMAGE_UINT8 || picture->type == IMAGE_UINT16;
@@ -70,23 +69,23 @@ ag_status image_colors_find(const scene *s, image_encoding encoding, const image
     if (!is_said && !is_integer && picture->has_chromaticities &&
         color_chromaticities_to_rec709(picture->chromaticities, &to_rec709)) {
         c.encoding = (image_encoding){.curve = IMAGE_CURVE_LINEAR};
-        set_from_rec709(s, &to_rec709, &c);
+        set_from_rec709(target, &to_rec709, &c);
     } else if (encoding.curve == IMAGE_CURVE_SPACE) {
         c.encoding = (image_encoding){.curve = IMAGE_CURVE_LINEAR};
-        status = find_by_space(s, encoding, is_integer, &c, message, message_size);
-    } else if (!s->space.is_rec709) {
+        status = find_by_space(target, encoding, is_integer, &c, message, message_size);
+    } else if (!target->space->is_rec709) {
         to_rec709 = color_space_to_rec709(COLOR_SPACE_SRGB, false);
-        set_from_rec709(s, &to_rec709, &c);
+        set_from_rec709(target, &to_rec709, &c);
     }
     *out_colors = c;
     return status;
 }
 
-ag_status image_colors_decode(const scene *s, const image_colors *colors, float *rgb_pixels, size_t count,
-                              char *message, size_t message_size)
+ag_status image_colors_decode(const image_colors_target *target, const image_colors *colors, float *rgb_pixels,
+                              size_t count, char *message, size_t message_size)
 {
     color_processor *processor;
-    AG_TRY(color_decoder_create(s->color_config, colors->space, message, message_size, &processor));
+    AG_TRY(color_decoder_create(target->config, colors->space, message, message_size, &processor));
     const ag_status status = color_processor_apply(processor, rgb_pixels, count, message, message_size);
     color_processor_destroy(processor);
     return status;

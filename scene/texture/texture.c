@@ -3,10 +3,11 @@
 #include "texture/texture.h"
 
 #include "math/sampling.h"
-#include "scene.h"
+#include "surface.h"
 #include "texture/texture_checkerboard.h"
 #include "texture/texture_filter.h"
 #include "texture/texture_noise.h"
+#include "texture/texture_set.h"
 #include "texture/texture_udim.h"
 
 #include <string.h>
@@ -32,24 +33,24 @@ typedef struct lookup {
     const surface_footprint *footprint; /* NULL: nothing is */
 } lookup;
 
-static rgb evaluate(const scene *s, const texture *t, const lookup *at);
+static rgb evaluate(const texture_set *set, const texture *t, const lookup *at);
 
-static rgb input_at(const scene *s, const texture *t, int which, const lookup *at)
+static rgb input_at(const texture_set *set, const texture *t, int which, const lookup *at)
 {
     const texture_input *input = &t->inputs[which];
     return input->texture_index == SCENE_NO_TEXTURE ? input->value
-                                                    : evaluate(s, &s->textures[input->texture_index], at);
+                                                    : evaluate(set, &set->items[input->texture_index], at);
 }
 
 /* The second's share is amount. One that has no share is not asked: it may be costly. */
-static rgb mix_inputs(const scene *s, const texture *t, float amount, const lookup *at)
+static rgb mix_inputs(const texture_set *set, const texture *t, float amount, const lookup *at)
 {
-    rgb first = amount == 1.0f ? rgb_gray(0.0f) : input_at(s, t, 0, at);
-    rgb second = amount == 0.0f ? rgb_gray(0.0f) : input_at(s, t, 1, at);
+    rgb first = amount == 1.0f ? rgb_gray(0.0f) : input_at(set, t, 0, at);
+    rgb second = amount == 0.0f ? rgb_gray(0.0f) : input_at(set, t, 1, at);
     return rgb_add(rgb_scale(first, 1.0f - amount), rgb_scale(second, amount));
 }
 
-static rgb checkerboard(const scene *s, const texture *t, const lookup *at)
+static rgb checkerboard(const texture_set *set, const texture *t, const lookup *at)
 {
     const surface_hit *hit = at->hit;
     const texture_mapping *m = &t->mapping;
@@ -62,7 +63,7 @@ static rgb checkerboard(const scene *s, const texture *t, const lookup *at)
         p = vec3_make(st.x, st.y, 0.5f);
     }
     if (!at->footprint)
-        return input_at(s, t, checkerboard_is_odd(p) ? 1 : 0, at);
+        return input_at(set, t, checkerboard_is_odd(p) ? 1 : 0, at);
     for (int k = 0; k < 2; k++) {
         if (is_solid) {
             axes[k] = texture_mapping_point_step(m, at->footprint->axes[k]);
@@ -72,7 +73,7 @@ static rgb checkerboard(const scene *s, const texture *t, const lookup *at)
             texture_mapping_step(m, hit->uv, hit->position, at->footprint->uv_axes[k], at->footprint->axes[k]);
         axes[k] = vec3_make(step.x, step.y, 0.0f);
     }
-    return mix_inputs(s, t, checkerboard_odd_share(p, axes, is_solid), at);
+    return mix_inputs(set, t, checkerboard_odd_share(p, axes, is_solid), at);
 }
 
 /* The second: over the footprint. */
@@ -94,10 +95,10 @@ static rgb filtered_picture_rgb(const texture *t, const texture_image *picture, 
                                                                     &f);
 }
 
-static rgb image_value(const scene *s, const texture *t, const lookup *at)
+static rgb image_value(const texture_set *set, const texture *t, const lookup *at)
 {
     const surface_hit *hit = at->hit;
-    const texture_image *picture = s->texture_images[t->image_index];
+    const texture_image *picture = set->images[t->image_index];
     vec2 st = texture_mapping_st(&t->mapping, hit->uv, hit->position);
     if (!t->is_spectrum) {
         float value = t->scale * texture_image_float(picture, t->channel, t->wraps, t->filter, st.x, 1.0f - st.y);
@@ -166,24 +167,24 @@ static rgb marble(const texture *t, vec3 point)
     return marble_color(fminf(fmaxf(0.5f + 0.5f * sine, 0.0f), 1.0f));
 }
 
-static rgb evaluate(const scene *s, const texture *t, const lookup *at)
+static rgb evaluate(const texture_set *set, const texture *t, const lookup *at)
 {
     const surface_hit *hit = at->hit;
     switch (t->kind) {
     case TEXTURE_CONSTANT: return t->inputs[0].value;
     case TEXTURE_SCALE: { /* by a float, which is grey, or by a colour */
-        rgb factor = input_at(s, t, 1, at);
-        return rgb_is_black(factor) ? rgb_gray(0.0f) : rgb_mul(input_at(s, t, 0, at), factor);
+        rgb factor = input_at(set, t, 1, at);
+        return rgb_is_black(factor) ? rgb_gray(0.0f) : rgb_mul(input_at(set, t, 0, at), factor);
     }
-    case TEXTURE_MIX: return mix_inputs(s, t, input_at(s, t, 2, at).r, at);
+    case TEXTURE_MIX: return mix_inputs(set, t, input_at(set, t, 2, at).r, at);
     case TEXTURE_DIRECTION_MIX:
-        return mix_inputs(s, t, 1.0f - fabsf(vec3_dot(hit->geometric_normal, t->direction)), at);
-    case TEXTURE_CHECKERBOARD: return checkerboard(s, t, at);
-    case TEXTURE_IMAGE: return image_value(s, t, at);
+        return mix_inputs(set, t, 1.0f - fabsf(vec3_dot(hit->geometric_normal, t->direction)), at);
+    case TEXTURE_CHECKERBOARD: return checkerboard(set, t, at);
+    case TEXTURE_IMAGE: return image_value(set, t, at);
     case TEXTURE_BILERP: return bilerp(t, hit);
     case TEXTURE_DOTS: {
         bool inside = is_inside_dot(texture_mapping_st(&t->mapping, hit->uv, hit->position));
-        return input_at(s, t, inside ? 0 : 1, at);
+        return input_at(set, t, inside ? 0 : 1, at);
     }
     default: break;
     }
@@ -194,57 +195,58 @@ static rgb evaluate(const scene *s, const texture *t, const lookup *at)
     case TEXTURE_WINDY: return rgb_gray(windy(p));
     default: {
         rgb c = marble(t, p);
-        return s->space.is_rec709 ? c : working_space_reflectance(&s->space, c);
+        return set->colors.space->is_rec709 ? c : working_space_reflectance(set->colors.space, c);
     }
     }
 }
 
-rgb texture_evaluate_rgb(const struct scene *s, uint32_t texture_index, const struct surface_hit *hit)
+rgb texture_evaluate_rgb(const texture_set *set, uint32_t texture_index, const struct surface_hit *hit)
 {
-    return evaluate(s, &s->textures[texture_index], &(lookup){hit, NULL});
+    return evaluate(set, &set->items[texture_index], &(lookup){hit, NULL});
 }
 
-rgb texture_filtered_rgb(const struct scene *s, uint32_t texture_index, const struct surface_hit *hit,
+rgb texture_filtered_rgb(const texture_set *set, uint32_t texture_index, const struct surface_hit *hit,
                          const surface_footprint *footprint)
 {
-    const texture *t = &s->textures[texture_index];
-    return evaluate(s, t, &(lookup){hit, texture_is_filtered(t) ? footprint : NULL});
+    const texture *t = &set->items[texture_index];
+    return evaluate(set, t, &(lookup){hit, texture_is_filtered(t) ? footprint : NULL});
 }
 
-float texture_evaluate_float(const struct scene *s, uint32_t texture_index, const struct surface_hit *hit)
+float texture_evaluate_float(const texture_set *set, uint32_t texture_index, const struct surface_hit *hit)
 {
-    return evaluate(s, &s->textures[texture_index], &(lookup){hit, NULL}).r;
+    return evaluate(set, &set->items[texture_index], &(lookup){hit, NULL}).r;
 }
 
 /* --- what pictures do to a texture --- */
 
-static const texture *input_texture(const struct scene *s, const texture *t, int which)
+static const texture *input_texture(const texture_set *set, const texture *t, int which)
 {
     uint32_t index = t->inputs[which].texture_index;
-    return index == SCENE_NO_TEXTURE ? NULL : &s->textures[index];
+    return index == SCENE_NO_TEXTURE ? NULL : &set->items[index];
 }
 
-static bool has_pictures(const struct scene *s, const texture *t, int which)
+static bool has_pictures(const texture_set *set, const texture *t, int which)
 {
-    const texture *input = input_texture(s, t, which);
+    const texture *input = input_texture(set, t, which);
     return input && input->has_pictures;
 }
 
-static bool varies(const struct scene *s, const texture *t, int which)
+static bool varies(const texture_set *set, const texture *t, int which)
 {
-    const texture *input = input_texture(s, t, which);
+    const texture *input = input_texture(set, t, which);
     return input && input->kind != TEXTURE_CONSTANT;
 }
 
 /* Whether its value is more than a weighted sum of its pictures' values, by weights that are alike everywhere. */
-static bool is_product(const struct scene *s, const texture *t)
+static bool is_product(const texture_set *set, const texture *t)
 {
-    const bool any = has_pictures(s, t, 0) || has_pictures(s, t, 1);
+    const bool any = has_pictures(set, t, 0) || has_pictures(set, t, 1);
     switch (t->kind) {
-    case TEXTURE_SCALE: return (has_pictures(s, t, 0) && varies(s, t, 1)) || (has_pictures(s, t, 1) && varies(s, t, 0));
+    case TEXTURE_SCALE:
+        return (has_pictures(set, t, 0) && varies(set, t, 1)) || (has_pictures(set, t, 1) && varies(set, t, 0));
     case TEXTURE_MIX:
-        return (any && varies(s, t, 2)) || (has_pictures(s, t, 2) && (varies(s, t, 0) || varies(s, t, 1)));
-    case TEXTURE_CHECKERBOARD: return varies(s, t, 0) || varies(s, t, 1);
+        return (any && varies(set, t, 2)) || (has_pictures(set, t, 2) && (varies(set, t, 0) || varies(set, t, 1)));
+    case TEXTURE_CHECKERBOARD: return varies(set, t, 0) || varies(set, t, 1);
     case TEXTURE_DOTS:
     case TEXTURE_DIRECTION_MIX: return any; /* one of the two is picked */
     default: return false;
@@ -274,9 +276,9 @@ static float bound_of_values(const texture *t, const texture_image *picture)
     return t->invert ? 1.0f : most;
 }
 
-static float bound_of_picture(const struct scene *s, const texture *t)
+static float bound_of_picture(const texture_set *set, const texture *t)
 {
-    const texture_image *picture = s->texture_images[t->image_index];
+    const texture_image *picture = set->images[t->image_index];
     if (!picture->udim)
         return bound_of_values(t, picture);
     float most = t->invert ? 1.0f : 0.0f; /* beyond the tiles all is black */
@@ -286,38 +288,38 @@ static float bound_of_picture(const struct scene *s, const texture *t)
     return most;
 }
 
-static float bound_of_input(const struct scene *s, const texture *t, int which)
+static float bound_of_input(const texture_set *set, const texture *t, int which)
 {
-    const texture *input = input_texture(s, t, which);
+    const texture *input = input_texture(set, t, which);
     const rgb value = t->inputs[which].value;
     if (input)
         return input->most;
     return value.r < 0.0f || value.g < 0.0f || value.b < 0.0f ? INFINITY : rgb_max(value);
 }
 
-static float bound_of(const struct scene *s, const texture *t)
+static float bound_of(const texture_set *set, const texture *t)
 {
     switch (t->kind) {
-    case TEXTURE_IMAGE: return bound_of_picture(s, t);
-    case TEXTURE_CONSTANT: return bound_of_input(s, t, 0);
-    case TEXTURE_SCALE: return bound_of_input(s, t, 0) * bound_of_input(s, t, 1);
+    case TEXTURE_IMAGE: return bound_of_picture(set, t);
+    case TEXTURE_CONSTANT: return bound_of_input(set, t, 0);
+    case TEXTURE_SCALE: return bound_of_input(set, t, 0) * bound_of_input(set, t, 1);
     case TEXTURE_MIX:
-        if (!(bound_of_input(s, t, 2) <= 1.0f))
+        if (!(bound_of_input(set, t, 2) <= 1.0f))
             return INFINITY;
-        return fmaxf(bound_of_input(s, t, 0), bound_of_input(s, t, 1));
-    case TEXTURE_CHECKERBOARD: return fmaxf(bound_of_input(s, t, 0), bound_of_input(s, t, 1));
+        return fmaxf(bound_of_input(set, t, 0), bound_of_input(set, t, 1));
+    case TEXTURE_CHECKERBOARD: return fmaxf(bound_of_input(set, t, 0), bound_of_input(set, t, 1));
     default: return INFINITY; /* these are never filtered */
     }
 }
 
-void texture_find_pictures(const struct scene *s, texture *t)
+void texture_find_pictures(const texture_set *set, texture *t)
 {
     t->has_pictures = t->kind == TEXTURE_IMAGE || t->kind == TEXTURE_CHECKERBOARD;
-    t->is_linear_in_pictures = !is_product(s, t);
+    t->is_linear_in_pictures = !is_product(set, t);
     for (int i = 0; i < (int)(sizeof t->inputs / sizeof *t->inputs); i++) {
-        const texture *input = input_texture(s, t, i);
-        t->has_pictures = t->has_pictures || has_pictures(s, t, i);
+        const texture *input = input_texture(set, t, i);
+        t->has_pictures = t->has_pictures || has_pictures(set, t, i);
         t->is_linear_in_pictures = t->is_linear_in_pictures && (!input || input->is_linear_in_pictures);
     }
-    t->most = bound_of(s, t);
+    t->most = bound_of(set, t);
 }

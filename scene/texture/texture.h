@@ -10,7 +10,7 @@
 #include "texture/texture_image.h"
 #include "texture/texture_mapping.h"
 
-struct scene;
+typedef struct texture_set texture_set; /* texture_set.h */
 struct surface_hit;
 
 #define SCENE_NO_TEXTURE UINT32_MAX
@@ -56,8 +56,8 @@ typedef struct texture {
     int octaves;     /* fbm, wrinkled, marble; [0, TEXTURE_MAX_OCTAVES] */
     float roughness; /* fbm, wrinkled, marble: of an octave over the one before */
     float variation; /* marble */
-    uint32_t cost;   /* set by scene_add_texture */
-    float step;      /* of u and v, over which its slope is to be taken; set by scene_add_texture, as all below */
+    uint32_t cost;   /* set by texture_set_add */
+    float step;      /* of u and v, over which its slope is to be taken; set by texture_set_add, as all below */
     bool has_pictures, is_linear_in_pictures; /* linear: the mean of its values is the value of its pictures' means;
                                                  a checkerboard counts as a picture, linear if of constant values */
     float most;                               /* no value is larger; infinite where that is not known, or some may be
@@ -75,13 +75,13 @@ typedef struct surface_footprint {
 texture texture_make(texture_kind kind);
 
 /* The value at a hit. Of a float texture all components are the same. */
-rgb texture_evaluate_rgb(const struct scene *s, uint32_t texture_index, const struct surface_hit *hit);
+rgb texture_evaluate_rgb(const texture_set *set, uint32_t texture_index, const struct surface_hit *hit);
 /* The mean value over a footprint, where it is to be had from the mean of the texture's pictures and none of its values
  * is above 1, where reflectances are cut. footprint NULL: the value at the hit. */
-rgb texture_filtered_rgb(const struct scene *s, uint32_t texture_index, const struct surface_hit *hit,
+rgb texture_filtered_rgb(const texture_set *set, uint32_t texture_index, const struct surface_hit *hit,
                          const surface_footprint *footprint);
 /* The value of a float texture at a hit. */
-float texture_evaluate_float(const struct scene *s, uint32_t texture_index, const struct surface_hit *hit);
+float texture_evaluate_float(const texture_set *set, uint32_t texture_index, const struct surface_hit *hit);
 
 /* Whether texture_filtered_rgb heeds a footprint. */
 static inline bool texture_is_filtered(const texture *t)
@@ -90,6 +90,6 @@ static inline bool texture_is_filtered(const texture *t)
 }
 
 /* Sets has_pictures, is_linear_in_pictures and most. */
-void texture_find_pictures(const struct scene *s, texture *in_out);
+void texture_find_pictures(const texture_set *set, texture *in_out);
 
 #endif

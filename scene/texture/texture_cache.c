@@ -10,8 +10,6 @@
 
 #include "descriptor.h"
 #include "image/image.h"
-#include "scene.h"
-#include "scene_request.h"
 #include "status.h"
 #include "texture/texture_cache_folder.h"
 #include "texture/texture_file_levels.h"
@@ -204,25 +202,25 @@ static texture_tile_part *read_parts(int descriptor, const kept_header *h, const
     return NULL;
 }
 
-static ag_status take_levels(const scene *s, const texture_tile_part *parts, texture_image *i)
+static ag_status take_levels(const texture_set *set, const texture_tile_part *parts, texture_image *i)
 {
     const kept_levels l = levels_of(i);
     ag_status status = AG_OK;
     for (uint32_t k = 0; k < l.count && status == AG_OK; k++) {
         const texture_layout layout = texture_level_layout(l.items[k]);
-        status = texture_store_take(s->texture_store, texture_kept_file(i->kept), layout, parts, &l.items[k]->tiles);
+        status = texture_store_take(set->store, texture_kept_file(i->kept), layout, parts, &l.items[k]->tiles);
         parts += texture_layout_tile_count(layout);
     }
     return status;
 }
 
 /* The conversion that is left depends on the scene; so does the way in which values were made linear, in part. */
-static ag_status find_colors(const scene *s, const kept_header *h, texture_image *i, bool *out_is_same, char *message,
-                             size_t message_size)
+static ag_status find_colors(const texture_set *set, const kept_header *h, texture_image *i, bool *out_is_same,
+                             char *message, size_t message_size)
 {
     image description = {.type = (image_sample_type)h->type, .has_chromaticities = h->has_chromaticities};
     memcpy(description.chromaticities, h->chromaticities, sizeof description.chromaticities);
-    AG_TRY(image_colors_find(s, i->encoding, &description, &i->colors, message, message_size));
+    AG_TRY(image_colors_find(&set->colors, i->encoding, &description, &i->colors, message, message_size));
     *out_is_same =
         !i->colors.space && (int32_t)i->colors.encoding.curve == h->curve && i->colors.encoding.gamma == h->gamma;
     if (!*out_is_same || !h->as_bytes)
@@ -230,11 +228,11 @@ static ag_status find_colors(const scene *s, const kept_header *h, texture_image
     return image_encoding_table(i->colors.encoding, 256, i->table, message, message_size);
 }
 
-static ag_status take(const scene *s, const kept_header *h, texture_image *i, bool *out_is_taken, char *message,
+static ag_status take(const texture_set *set, const kept_header *h, texture_image *i, bool *out_is_taken, char *message,
                       size_t message_size)
 {
     bool is_same;
-    AG_TRY(find_colors(s, h, i, &is_same, message, message_size));
+    AG_TRY(find_colors(set, h, i, &is_same, message, message_size));
     if (!is_same)
         return AG_OK;
     if (!describe_levels(h, i))
@@ -244,7 +242,7 @@ static ag_status take(const scene *s, const kept_header *h, texture_image *i, bo
         store_relaxed_u32(&i->kept->file.is_damaged, 1);
         return AG_OK;
     }
-    const ag_status status = take_levels(s, parts, i);
+    const ag_status status = take_levels(set, parts, i);
     free(parts);
     i->width = h->width;
     i->height = h->height;
@@ -258,14 +256,14 @@ static ag_status take(const scene *s, const kept_header *h, texture_image *i, bo
     return status;
 }
 
-ag_status texture_cache_find(run_context *run, const struct scene *s, hash128 key, texture_image *i, bool *out_is_found,
-                             char *message, size_t message_size)
+ag_status texture_cache_find(run_context *run, const texture_set *set, hash128 key, texture_image *i,
+                             bool *out_is_found, char *message, size_t message_size)
 {
     char path[PATH_SIZE];
     struct stat file;
     kept_header h;
     *out_is_found = false;
-    path_of(path, s->request->texture_cache, key);
+    path_of(path, set->limits.cache, key);
     const int descriptor = descriptor_beyond_standard(open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOFOLLOW));
     if (descriptor < 0)
         return AG_OK;
@@ -274,14 +272,14 @@ ag_status texture_cache_find(run_context *run, const struct scene *s, hash128 ke
                          is_sound(&h, key, (uint64_t)file.st_size);
     if (!is_good)
         unlink(path); /* for a good one to take its place */
-    if (!is_good || texture_store_has_room(s->texture_store, h.whole_bytes)) {
+    if (!is_good || texture_store_has_room(set->store, h.whole_bytes)) {
         close(descriptor);
         return AG_OK;
     }
     i->kept = hold(descriptor, path);
     if (!i->kept)
         return AG_OK;
-    ag_status status = take(s, &h, i, out_is_found, message, message_size);
+    ag_status status = take(set, &h, i, out_is_found, message, message_size);
     if (status == AG_OK && *out_is_found) {
         futimens(descriptor, NULL);
         log_message(run ? run->log : NULL, AG_LOG_INFO, "'%s': %.1f MB of tiles are in '%s'", i->path,
@@ -295,9 +293,9 @@ ag_status texture_cache_find(run_context *run, const struct scene *s, hash128 ke
 
 /* --- keeping --- */
 
-texture_kept *texture_cache_begin(run_context *run, const struct scene *s)
+texture_kept *texture_cache_begin(run_context *run, const texture_set *set)
 {
-    const char *folder = s->request->texture_cache;
+    const char *folder = set->limits.cache;
     const int descriptor = texture_cache_folder_open(folder);
     if (descriptor >= 0)
         return hold(descriptor, "");
@@ -354,27 +352,27 @@ static int complete(texture_kept *k, kept_header *h, const texture_image *i)
     return failure;
 }
 
-void texture_cache_finish(run_context *run, const struct scene *s, texture_kept *k, hash128 key, const texture_image *i,
-                          const struct image *description, uint64_t whole_bytes)
+void texture_cache_finish(run_context *run, const texture_set *set, texture_kept *k, hash128 key,
+                          const texture_image *i, const struct image *description, uint64_t whole_bytes)
 {
     log_sink *log = run ? run->log : NULL;
-    const scene_request *asked = s->request;
+    const texture_limits *limits = &set->limits;
     kept_header h = header_of(key, i, description, whole_bytes);
     char path[PATH_SIZE];
-    path_of(path, asked->texture_cache, key);
+    path_of(path, limits->cache, key);
     int failure = complete(k, &h, i);
     const uint64_t size = h.parts_offset + h.part_count * sizeof(texture_tile_part);
-    if (failure == 0 && size > asked->texture_cache_bytes)
+    if (failure == 0 && size > limits->cache_bytes)
         failure = EFBIG;
     if (failure == 0)
         failure = texture_cache_folder_name(k->file.descriptor, path);
     if (failure) {
         log_message(log, AG_LOG_WARNING, "'%s': its %.1f MB of tiles are not kept in '%s' (--texture-cache): %s",
-                    i->path, (double)size / 1e6, asked->texture_cache,
+                    i->path, (double)size / 1e6, limits->cache,
                     failure == EFBIG ? "they are more than --texture-cache-size" : strerror(failure));
         return;
     }
     snprintf(k->path, sizeof k->path, "%s", path);
     log_message(log, AG_LOG_INFO, "'%s': %.1f MB of tiles are kept in '%s'", i->path, (double)size / 1e6, path);
-    texture_cache_folder_bound(asked->texture_cache, asked->texture_cache_bytes, path);
+    texture_cache_folder_bound(limits->cache, limits->cache_bytes, path);
 }

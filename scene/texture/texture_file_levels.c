@@ -3,9 +3,9 @@
 #include "texture/texture_file_levels_private.h"
 
 #include "clock.h"
-#include "scene.h"
 #include "status.h"
 #include "text/input_file.h"
+#include "texture/texture_set.h"
 
 #include <float.h>
 #include <math.h>
@@ -289,7 +289,7 @@ static void tell_of_alpha(run_context *run, const texture_file_levels *l, const 
              i->path);
 }
 
-static ag_status read_levels(run_context *run, const struct scene *s, texture_file_levels *l, texture_image *i,
+static ag_status read_levels(run_context *run, const texture_set *set, texture_file_levels *l, texture_image *i,
                              char *message, size_t message_size)
 {
     AG_TRY(find_curve(l, i, message, message_size));
@@ -301,8 +301,8 @@ static ag_status read_levels(run_context *run, const struct scene *s, texture_fi
     i->mips = calloc(1, sizeof *i->mips);
     if (!i->mips)
         return AG_ERROR_MEMORY;
-    const bool is_kept = !s->texture_store || texture_store_keeps(s->texture_store, whole_bytes(l));
-    const ag_status status = is_kept ? read_whole(run, l, i) : lend_tiles(run, l, s->texture_store, i);
+    const bool is_kept = !set->store || texture_store_keeps(set->store, whole_bytes(l));
+    const ag_status status = is_kept ? read_whole(run, l, i) : lend_tiles(run, l, set->store, i);
     if (status == AG_OK && (l->as_bytes || l->curve))
         texture_file_levels_warn_of_loss(run, l, i);
     if (status == AG_OK)
@@ -312,7 +312,7 @@ static ag_status read_levels(run_context *run, const struct scene *s, texture_fi
     return status;
 }
 
-ag_status texture_file_levels_read(run_context *run, const struct scene *s, texture_image *i, bool *out_is_read,
+ag_status texture_file_levels_read(run_context *run, const texture_set *set, texture_image *i, bool *out_is_read,
                                    char *message, size_t message_size)
 {
     image_levels *file;
@@ -330,10 +330,11 @@ ag_status texture_file_levels_read(run_context *run, const struct scene *s, text
     l->header = image_levels_describe(file);
     l->color_count = l->header->picture.channel_count >= 3 ? 3 : 1;
     l->as_bytes = l->header->picture.type == IMAGE_UINT8;
-    ag_status status = image_colors_find(s, i->encoding, &l->header->picture, &i->colors, message, message_size);
+    ag_status status =
+        image_colors_find(&set->colors, i->encoding, &l->header->picture, &i->colors, message, message_size);
     *out_is_read = status == AG_OK && !i->colors.space;
     if (*out_is_read)
-        status = read_levels(run, s, l, i, message, message_size);
+        status = read_levels(run, set, l, i, message, message_size);
     if (!i->is_stored) {
         texture_file_levels_destroy(l);
         i->file = NULL;

@@ -4,15 +4,15 @@
 #ifndef AFTERGLOW_TEXTURE_FILE_LEVELS_H
 #define AFTERGLOW_TEXTURE_FILE_LEVELS_H
 
-#include "texture/texture_image.h"
+#include "texture/texture_set.h"
 
 typedef struct texture_file_levels texture_file_levels;
 
-/* Fills *i, of which path and encoding are known so far, with pixels and mips; in the store, where it is not NULL and
- * does not keep so large a picture. *out_is_read false, with AG_OK: the file holds no levels, or its colours ask for
- * more than a curve and a matrix; it is to be read whole. Errors: AG_ERROR_INPUT, AG_ERROR_COLOR, AG_ERROR_MEMORY,
- * AG_CANCELLED; text in message. */
-ag_status texture_file_levels_read(run_context *run, const struct scene *s, texture_image *i, bool *out_is_read,
+/* Fills *i, of which path and encoding are known so far, with pixels and mips; in the store of the set, where it is not
+ * NULL and does not keep so large a picture. *out_is_read false, with AG_OK: the file holds no levels, or its colours
+ * ask for more than a curve and a matrix; it is to be read whole. Errors: AG_ERROR_INPUT, AG_ERROR_COLOR,
+ * AG_ERROR_MEMORY, AG_CANCELLED; text in message. */
+ag_status texture_file_levels_read(run_context *run, const texture_set *set, texture_image *i, bool *out_is_read,
                                    char *message, size_t message_size);
 void texture_file_levels_destroy(texture_file_levels *l); /* NULL is fine; after the tiles that were lent */
 

@@ -3,7 +3,6 @@
 #include "texture/texture_image.h"
 
 #include "image/image.h"
-#include "scene.h"
 #include "texture/texture_cache.h"
 #include "texture/texture_file_levels.h"
 #include "texture/texture_udim.h"
@@ -64,7 +63,7 @@ static void clean_values(texture_image *i, size_t count)
 }
 
 /* From a colour space that is more than a curve and a matrix: three floats for each pixel, of the working space. */
-static ag_status decode_pixels(const scene *s, texture_image *i, const image *picture, char *message,
+static ag_status decode_pixels(const image_colors_target *target, texture_image *i, const image *picture, char *message,
                                size_t message_size)
 {
     const size_t pixel_count = (size_t)picture->width * (size_t)picture->height;
@@ -88,13 +87,14 @@ static ag_status decode_pixels(const scene *s, texture_image *i, const image *pi
         free(i->alpha_bytes);
         i->alpha_bytes = NULL;
     }
-    ag_status status = image_colors_decode(s, &i->colors, i->values, pixel_count, message, message_size);
+    ag_status status = image_colors_decode(target, &i->colors, i->values, pixel_count, message, message_size);
     clean_values(i, 3 * pixel_count);
     return status;
 }
 
 /* Takes the picture's pixels. */
-static ag_status take_pixels(const scene *s, texture_image *i, image *picture, char *message, size_t message_size)
+static ag_status take_pixels(const image_colors_target *target, texture_image *i, image *picture, char *message,
+                             size_t message_size)
 {
     const size_t channel_count = (size_t)picture->channel_count, kept = channel_count >= 3 ? 3 : 1;
     const size_t pixel_count = (size_t)picture->width * (size_t)picture->height;
@@ -103,11 +103,11 @@ static ag_status take_pixels(const scene *s, texture_image *i, image *picture, c
     i->channel_count = (uint32_t)kept;
     ag_status status = take_alpha(i, picture, pixel_count);
     if (status == AG_OK)
-        status = image_colors_find(s, i->encoding, picture, &i->colors, message, message_size);
+        status = image_colors_find(target, i->encoding, picture, &i->colors, message, message_size);
     if (status != AG_OK)
         return status;
     if (i->colors.space)
-        return decode_pixels(s, i, picture, message, message_size);
+        return decode_pixels(target, i, picture, message, message_size);
     if (picture->bytes) {
         i->bytes = keep_channels(picture->bytes, 1, pixel_count, channel_count, kept);
         picture->bytes = NULL;
@@ -134,9 +134,10 @@ static void find_range(texture_image *i)
     }
 }
 
-ag_status texture_image_take(const scene *s, texture_image *i, image *picture, char *message, size_t message_size)
+ag_status texture_image_take(const image_colors_target *target, texture_image *i, image *picture, char *message,
+                             size_t message_size)
 {
-    ag_status status = take_pixels(s, i, picture, message, message_size);
+    ag_status status = take_pixels(target, i, picture, message, message_size);
     if (status == AG_OK)
         find_range(i);
     return status;

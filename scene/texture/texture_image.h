@@ -14,7 +14,6 @@
 #include <stdint.h>
 
 struct image;
-struct scene;
 
 /* The channels of a picture: all three colours of a grey one are the same; alpha is 1 where it has none. */
 typedef enum texture_channel {
@@ -63,7 +62,7 @@ typedef struct texture_image {
 
 /* Takes the pixels of a picture that was read, of which *i has path and encoding so far. Errors: AG_ERROR_COLOR,
  * AG_ERROR_MEMORY; text in message. */
-ag_status texture_image_take(const struct scene *s, texture_image *i, struct image *picture, char *message,
+ag_status texture_image_take(const image_colors_target *target, texture_image *i, struct image *picture, char *message,
                              size_t message_size);
 void texture_image_destroy(texture_image *i); /* NULL is fine */
 /* Frees a picture's coarser levels, its stored tiles and the cache's file, and leaves these members empty. */

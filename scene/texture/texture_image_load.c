@@ -3,11 +3,11 @@
 #include "texture/texture_image_load.h"
 
 #include "image/image_reader.h"
-#include "scene.h"
 #include "status.h"
 #include "text/input_file.h"
 #include "texture/texture_cache.h"
 #include "texture/texture_file_levels.h"
+#include "texture/texture_set.h"
 #include "texture/texture_udim.h"
 
 #include <stdio.h>
@@ -47,8 +47,8 @@ static void tell_of_others(run_context *run, const texture_image *i)
 }
 
 /* *out_description: the picture without its pixels. */
-static ag_status read_image(const scene *s, texture_image *i, const source *from, image *out_description, char *message,
-                            size_t message_size)
+static ag_status read_image(const texture_set *set, texture_image *i, const source *from, image *out_description,
+                            char *message, size_t message_size)
 {
     image picture = {0};
     ag_status status = AG_OK;
@@ -65,7 +65,7 @@ static ag_status read_image(const scene *s, texture_image *i, const source *from
     out_description->bytes = NULL;
     i->is_first_of_several = picture.is_first_of_several;
     if (status == AG_OK)
-        status = texture_image_take(s, i, &picture, message, message_size);
+        status = texture_image_take(&set->colors, i, &picture, message, message_size);
     image_reset(&picture);
     return status;
 }
@@ -82,32 +82,32 @@ static uint64_t whole_bytes(const texture_image *i)
 }
 
 /* Pixels, coarser levels and alpha, into a file, as of texture_store_put. */
-static ag_status put_levels(run_context *run, scene *s, texture_image *i, tile_file *into, char *message,
+static ag_status put_levels(run_context *run, texture_set *set, texture_image *i, tile_file *into, char *message,
                             size_t message_size)
 {
     const texture_level finest = texture_image_finest(i);
     AG_TRY(texture_mips_create(run, &finest, &i->mips));
-    AG_TRY(texture_mips_put(run, i->mips, s->texture_store, into, message, message_size));
+    AG_TRY(texture_mips_put(run, i->mips, set->store, into, message, message_size));
     if (!i->alpha_bytes && !i->alpha_values)
         return AG_OK;
     i->stored_alpha = texture_image_alpha(i, false);
-    return texture_level_put(run, &i->stored_alpha, s->texture_store, into, message, message_size);
+    return texture_level_put(run, &i->stored_alpha, set->store, into, message, message_size);
 }
 
 /* put_levels into the folder where pictures are kept. A folder that is full, or cannot be written, is told; *out_is_put
  * is false, and nothing has happened to *i. */
-static ag_status put_to_keep(run_context *run, scene *s, texture_image *i, const hash128 *key, const image *description,
-                             bool *out_is_put, char *message, size_t message_size)
+static ag_status put_to_keep(run_context *run, texture_set *set, texture_image *i, const hash128 *key,
+                             const image *description, bool *out_is_put, char *message, size_t message_size)
 {
     *out_is_put = false;
-    i->kept = texture_cache_begin(run, s);
+    i->kept = texture_cache_begin(run, set);
     if (!i->kept)
         return AG_OK;
-    const ag_status status = put_levels(run, s, i, texture_kept_file(i->kept), message, message_size);
+    const ag_status status = put_levels(run, set, i, texture_kept_file(i->kept), message, message_size);
     if (status != AG_ERROR_SYSTEM) {
         *out_is_put = status == AG_OK;
         if (status == AG_OK)
-            texture_cache_finish(run, s, i->kept, *key, i, description, whole_bytes(i));
+            texture_cache_finish(run, set, i->kept, *key, i, description, whole_bytes(i));
         return status;
     }
     log_once(run ? run->log : NULL, AG_LOG_WARNING, "texture cache", "%s", message);
@@ -116,15 +116,15 @@ static ag_status put_to_keep(run_context *run, scene *s, texture_image *i, const
 }
 
 /* Moves what does not fit into the scene's store. key: to keep it by; NULL: it is not to be kept. */
-static ag_status put_into_store(run_context *run, scene *s, texture_image *i, const hash128 *key,
+static ag_status put_into_store(run_context *run, texture_set *set, texture_image *i, const hash128 *key,
                                 const image *description, char *message, size_t message_size)
 {
     bool is_put = false;
     i->stored_content = texture_image_content(i);
     if (key && !i->colors.space)
-        AG_TRY(put_to_keep(run, s, i, key, description, &is_put, message, message_size));
+        AG_TRY(put_to_keep(run, set, i, key, description, &is_put, message, message_size));
     if (!is_put)
-        AG_TRY(put_levels(run, s, i, NULL, message, message_size));
+        AG_TRY(put_levels(run, set, i, NULL, message, message_size));
     free(i->bytes);
     free(i->values);
     free(i->alpha_bytes);
@@ -136,34 +136,35 @@ static ag_status put_into_store(run_context *run, scene *s, texture_image *i, co
 }
 
 /* Where memory is limited. */
-static ag_status make_store(scene *s)
+static ag_status make_store(texture_set *set)
 {
-    const uint64_t limit_bytes = s->request ? s->request->texture_memory_bytes : 0;
-    if (limit_bytes > 0 && !s->texture_store) {
-        s->texture_store = texture_store_create(limit_bytes);
-        if (!s->texture_store)
+    const uint64_t limit_bytes = set->limits.memory_bytes;
+    if (limit_bytes > 0 && !set->store) {
+        set->store = texture_store_create(limit_bytes);
+        if (!set->store)
             return AG_ERROR_MEMORY;
     }
     return AG_OK;
 }
 
 /* A picture that is read whole; kept ones are not read, where they do not fit into memory. */
-static ag_status read_and_hold(scene *s, texture_image *i, const source *from, char *message, size_t message_size)
+static ag_status read_and_hold(texture_set *set, texture_image *i, const source *from, char *message,
+                               size_t message_size)
 {
     image description;
     hash128 key;
-    const bool is_to_keep = s->texture_store && s->request->texture_cache && !from->pixels;
+    const bool is_to_keep = set->store && set->limits.cache && !from->pixels;
     if (is_to_keep) {
         bool is_found;
         key = texture_cache_key(from->path, from->bytes, from->size, i->encoding);
-        AG_TRY(texture_cache_find(from->run, s, key, i, &is_found, message, message_size));
+        AG_TRY(texture_cache_find(from->run, set, key, i, &is_found, message, message_size));
         if (is_found)
             return AG_OK;
     }
-    AG_TRY(read_image(s, i, from, &description, message, message_size));
-    if (!s->texture_store || texture_store_keeps(s->texture_store, whole_bytes(i)))
+    AG_TRY(read_image(set, i, from, &description, message, message_size));
+    if (!set->store || texture_store_keeps(set->store, whole_bytes(i)))
         return AG_OK;
-    return put_into_store(from->run, s, i, is_to_keep ? &key : NULL, &description, message, message_size);
+    return put_into_store(from->run, set, i, is_to_keep ? &key : NULL, &description, message, message_size);
 }
 
 /* --- tiles --- */
@@ -178,11 +179,11 @@ static void add_tile(texture_image *i, uint32_t slot, texture_image *tile)
     i->has_tile_alpha = i->has_tile_alpha || texture_image_has_alpha(tile);
 }
 
-static ag_status load(scene *s, const source *from, uint32_t *out_index, char *message, size_t message_size);
+static ag_status load(texture_set *set, const source *from, uint32_t *out_index, char *message, size_t message_size);
 
 /* Slots ascend. */
-static ag_status load_tiles(scene *s, texture_image *i, const source *from, const uint16_t *slots, uint32_t count,
-                            char *message, size_t message_size)
+static ag_status load_tiles(texture_set *set, texture_image *i, const source *from, const uint16_t *slots,
+                            uint32_t count, char *message, size_t message_size)
 {
     i->udim = calloc(1, sizeof *i->udim);
     if (!i->udim)
@@ -195,15 +196,15 @@ static ag_status load_tiles(scene *s, texture_image *i, const source *from, cons
         source tile = *from;
         char *path = texture_udim_file(from->path, slots[k]);
         tile.path = path;
-        status = path ? load(s, &tile, &index, message, message_size) : AG_ERROR_MEMORY;
+        status = path ? load(set, &tile, &index, message, message_size) : AG_ERROR_MEMORY;
         free(path);
         if (status == AG_OK)
-            add_tile(i, slots[k], s->texture_images[index]);
+            add_tile(i, slots[k], set->images[index]);
     }
     return status;
 }
 
-static ag_status read_tiles(scene *s, texture_image *i, const source *from, char *message, size_t message_size)
+static ag_status read_tiles(texture_set *set, texture_image *i, const source *from, char *message, size_t message_size)
 {
     char reason[128] = "it holds more than one of <UDIM> and <UVTILE>";
     uint16_t *slots;
@@ -216,7 +217,7 @@ static ag_status read_tiles(scene *s, texture_image *i, const source *from, char
     AG_TRY(texture_udim_find(from->path, &slots, &count));
     ag_status status = AG_ERROR_INPUT;
     if (count > 0) {
-        status = load_tiles(s, i, from, slots, count, message, message_size);
+        status = load_tiles(set, i, from, slots, count, message, message_size);
     } else {
         char *first = texture_udim_file(from->path, 0);
         snprintf(reason, sizeof reason, "No such file");
@@ -248,10 +249,10 @@ bool texture_image_is_there(const run_context *run, const char *path)
 /* --- each once --- */
 
 /* Returns the same picture in the scene before, where both can share it; NULL: it must be read. */
-static texture_image *find_kept(const scene *s, const source *from)
+static texture_image *find_kept(const texture_set *set, const source *from)
 {
-    for (uint32_t k = 0; s->before && k < s->before->texture_image_count; k++) {
-        texture_image *i = s->before->texture_images[k];
+    for (uint32_t k = 0; set->before && k < set->before->image_count; k++) {
+        texture_image *i = set->before->images[k];
         if (i->version != 0 && i->version == from->version && !i->is_stored && !i->file && !i->udim &&
             image_encoding_equal(i->encoding, from->encoding) && strcmp(i->path, from->path) == 0)
             return i;
@@ -259,25 +260,25 @@ static texture_image *find_kept(const scene *s, const source *from)
     return NULL;
 }
 
-static ag_status keep(scene *s, texture_image *kept, uint32_t *out_index)
+static ag_status keep(texture_set *set, texture_image *kept, uint32_t *out_index)
 {
-    AG_TRY(make_store(s));
-    if (s->texture_store)
-        (void)texture_store_keeps(s->texture_store, whole_bytes(kept)); /* it counts, whatever the limit says */
+    AG_TRY(make_store(set));
+    if (set->store)
+        (void)texture_store_keeps(set->store, whole_bytes(kept)); /* it counts, whatever the limit says */
     texture_image *i = texture_image_hold(kept);
     if (!i)
         return AG_ERROR_MEMORY;
-    s->reuse.pictures_kept++;
-    return scene_add_texture_image(s, i, out_index);
+    set->kept_count++;
+    return texture_set_add_image(set, i, out_index);
 }
 
-static ag_status load(scene *s, const source *given, uint32_t *out_index, char *message, size_t message_size)
+static ag_status load(texture_set *set, const source *given, uint32_t *out_index, char *message, size_t message_size)
 {
     source with_version = *given;
     const source *from = &with_version;
-    for (uint32_t k = 0; k < s->texture_image_count; k++)
-        if (image_encoding_equal(s->texture_images[k]->encoding, from->encoding) &&
-            strcmp(s->texture_images[k]->path, from->path) == 0) {
+    for (uint32_t k = 0; k < set->image_count; k++)
+        if (image_encoding_equal(set->images[k]->encoding, from->encoding) &&
+            strcmp(set->images[k]->path, from->path) == 0) {
             *out_index = k;
             return AG_OK;
         }
@@ -286,52 +287,52 @@ static ag_status load(scene *s, const source *given, uint32_t *out_index, char *
         AG_TRY(allow(from, message, message_size));
     if (is_on_disk && !is_tiled)
         with_version.version = input_file_version(from->path);
-    texture_image *kept = find_kept(s, from);
+    texture_image *kept = find_kept(set, from);
     if (kept)
-        return keep(s, kept, out_index);
+        return keep(set, kept, out_index);
     texture_image *i = calloc(1, sizeof *i);
     if (!i)
         return AG_ERROR_MEMORY;
-    s->reuse.pictures_read++;
+    set->read_count++;
     i->version = from->version;
     i->encoding = from->encoding;
     i->path = strdup(from->path);
     ag_status status = i->path ? AG_OK : AG_ERROR_MEMORY;
     if (status == AG_OK && is_tiled) {
-        status = read_tiles(s, i, from, message, message_size);
+        status = read_tiles(set, i, from, message, message_size);
     } else if (status == AG_OK) {
         bool is_read = false;
-        status = make_store(s);
+        status = make_store(set);
         if (status == AG_OK && is_on_disk)
-            status = texture_file_levels_read(from->run, s, i, &is_read, message, message_size);
+            status = texture_file_levels_read(from->run, set, i, &is_read, message, message_size);
         if (status == AG_OK && !is_read)
-            status = read_and_hold(s, i, from, message, message_size);
+            status = read_and_hold(set, i, from, message, message_size);
         if (status == AG_OK)
             tell_of_others(from->run, i);
     }
     if (status != AG_OK)
         texture_image_destroy(i);
-    return status ? status : scene_add_texture_image(s, i, out_index);
+    return status ? status : texture_set_add_image(set, i, out_index);
 }
 
-ag_status texture_image_load(run_context *run, struct scene *s, const char *path, image_encoding encoding,
+ag_status texture_image_load(run_context *run, texture_set *set, const char *path, image_encoding encoding,
                              uint32_t *out_index, char *message, size_t message_size)
 {
-    return load(s, &(source){.run = run, .path = path, .encoding = encoding}, out_index, message, message_size);
+    return load(set, &(source){.run = run, .path = path, .encoding = encoding}, out_index, message, message_size);
 }
 
-ag_status texture_image_load_memory(run_context *run, struct scene *s, const char *name, const unsigned char *bytes,
+ag_status texture_image_load_memory(run_context *run, texture_set *set, const char *name, const unsigned char *bytes,
                                     size_t size, image_encoding encoding, uint32_t *out_index, char *message,
                                     size_t message_size)
 {
     const source from = {.run = run, .path = name, .bytes = bytes, .size = size, .encoding = encoding};
-    return load(s, &from, out_index, message, message_size);
+    return load(set, &from, out_index, message, message_size);
 }
 
-ag_status texture_image_load_pixels(run_context *run, struct scene *s, const char *name, const image *pixels,
+ag_status texture_image_load_pixels(run_context *run, texture_set *set, const char *name, const image *pixels,
                                     uint64_t version, image_encoding encoding, uint32_t *out_index, char *message,
                                     size_t message_size)
 {
     const source from = {.run = run, .path = name, .pixels = pixels, .version = version, .encoding = encoding};
-    return load(s, &from, out_index, message, message_size);
+    return load(set, &from, out_index, message, message_size);
 }

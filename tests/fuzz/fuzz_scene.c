@@ -62,12 +62,13 @@ static void check_indices(const scene *s)
     }
     for (uint32_t i = 0; i < s->light_count; i++)
         FUZZ_CHECK(s->lights[i].kind != LIGHT_AREA || s->lights[i].as.area.shape_index < s->shape_count);
-    for (uint32_t i = 0; i < s->texture_count; i++) {
+    for (uint32_t i = 0; i < s->textures.count; i++) {
         for (int k = 0; k < 4; k++) {
-            uint32_t index = s->textures[i].inputs[k].texture_index;
+            uint32_t index = s->textures.items[i].inputs[k].texture_index;
             FUZZ_CHECK(index == SCENE_NO_TEXTURE || index < i);
         }
-        FUZZ_CHECK(s->textures[i].kind != TEXTURE_IMAGE || s->textures[i].image_index < s->texture_image_count);
+        FUZZ_CHECK(s->textures.items[i].kind != TEXTURE_IMAGE ||
+                   s->textures.items[i].image_index < s->textures.image_count);
     }
 }
 
@@ -91,8 +92,8 @@ static void cast_rays(const scene *s)
             const shape *met = &s->shapes[hit.shape_index];
             FUZZ_CHECK(met->kind != SHAPE_CURVES || hit.primitive_index < met->as.curves.segment_count);
             FUZZ_CHECK(met->kind != SHAPE_MESH || hit.primitive_index < met->as.mesh.triangle_count);
-            for (uint32_t i = 0; i < s->texture_count && i < 16; i++)
-                texture_evaluate_rgb(s, i, &hit);
+            for (uint32_t i = 0; i < s->textures.count && i < 16; i++)
+                texture_evaluate_rgb(&s->textures, i, &hit);
         }
 }
 

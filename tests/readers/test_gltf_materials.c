@@ -157,9 +157,9 @@ static void cloth_and_brushed_metal(void **state)
     m = only_material(&r);
     assert_true(m->sheen_texture != SCENE_NO_TEXTURE && m->sheen_roughness_texture != SCENE_NO_TEXTURE);
     assert_true(m->anisotropy_texture != SCENE_NO_TEXTURE && m->grain_texture != SCENE_NO_TEXTURE);
-    assert_int_equal(r.scene->textures[m->anisotropy_texture].channel, TEXTURE_CHANNEL_B);
-    assert_int_equal(r.scene->textures[m->sheen_roughness_texture].channel, TEXTURE_CHANNEL_A);
-    assert_true(r.scene->textures[m->grain_texture].is_data);
+    assert_int_equal(r.scene->textures.items[m->anisotropy_texture].channel, TEXTURE_CHANNEL_B);
+    assert_int_equal(r.scene->textures.items[m->sheen_roughness_texture].channel, TEXTURE_CHANNEL_A);
+    assert_true(r.scene->textures.items[m->grain_texture].is_data);
     reading_destroy(&r);
 }
 

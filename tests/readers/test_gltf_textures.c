@@ -10,8 +10,8 @@ static rgb value_at(const reading *r, uint32_t texture_index, float u, float v)
     surface_hit hit;
     memset(&hit, 0, sizeof hit);
     hit.uv = (vec2){u, v};
-    assert_true(texture_index < r->scene->texture_count);
-    return texture_evaluate_rgb(r->scene, texture_index, &hit);
+    assert_true(texture_index < r->scene->textures.count);
+    return texture_evaluate_rgb(&r->scene->textures, texture_index, &hit);
 }
 
 /* Linear from sRGB. */
@@ -77,7 +77,7 @@ static void material_textures(void **state)
     assert_near(value_at(&r, m->clearcoat_texture, u, v).r, 0.2, close);
     assert_near(value_at(&r, m->clearcoat_roughness_texture, u, v).r, 0.4, close);
     assert_near(value_at(&r, r.scene->shapes[0].alpha_texture, u, v).r, 0.4, close); /* times the factor's */
-    assert_int_equal(r.scene->texture_image_count, 2);                               /* once for each encoding */
+    assert_int_equal(r.scene->textures.image_count, 2);                              /* once for each encoding */
     reading_destroy(&r);
 
     r = gltf_read(material_text("{'extensions': {'KHR_materials_pbrSpecularGlossiness': {'glossinessFactor': 0.5,"

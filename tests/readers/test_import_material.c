@@ -174,8 +174,8 @@ static void lamps(void **state)
 
 static const texture *texture_of(const reading *r, uint32_t index)
 {
-    assert_true(index < r->scene->texture_count);
-    return &r->scene->textures[index];
+    assert_true(index < r->scene->textures.count);
+    return &r->scene->textures.items[index];
 }
 
 static void pictures(void **state)

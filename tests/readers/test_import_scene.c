@@ -218,9 +218,9 @@ static void pictures_within_the_file(void **state)
         assert_int_equal(r.status, AG_OK);
         if (k == 0) {
             assert_null(r.said[AG_LOG_WARNING]);
-            const texture *x = &r.scene->textures[model_material(&r, 0)->reflectance_texture];
+            const texture *x = &r.scene->textures.items[model_material(&r, 0)->reflectance_texture];
             assert_int_equal(x->wraps.t, TEXTURE_WRAP_MIRROR);
-            rgb c = texture_image_rgb(r.scene->texture_images[x->image_index], x->wraps, x->filter, .5f, .5f);
+            rgb c = texture_image_rgb(r.scene->textures.images[x->image_index], x->wraps, x->filter, .5f, .5f);
             assert_rgb(c, 1, 0, 0, 1e-6);
         } else {
             char expected[128];

@@ -137,7 +137,7 @@ static void area_lights(void **state)
         assert_rgb(light_emitted_radiance(r.scene, l, &hit, vec3_make(0.0f, 0.0f, 1.0f)), 12, 12, 12, 1e-5);
         assert_rgb(light_emitted_radiance(r.scene, l, &hit, vec3_make(0.0f, 0.0f, -1.0f)), 0, 0, 0, 0);
     }
-    assert_int_equal(r.scene->texture_image_count, 1);
+    assert_int_equal(r.scene->textures.image_count, 1);
     reading_destroy(&r);
     /* as much as makes a lamp of the picture's mean have that power */
     r = reading_with(

@@ -340,7 +340,7 @@ static void attributes_speak_to_what_follows(void **state)
     assert_rgb(r.scene->materials[r.scene->shapes[3].material_index].reflectance, .5, .5, .5, 1e-6);
     assert_int_equal(r.scene->light_count, 1);
     assert_rgb(r.scene->lights[0].as.area.radiance, 3, 6, 9, 1e-6);
-    assert_near(r.scene->textures[0].inputs[0].value.r, .25, 0);
+    assert_near(r.scene->textures.items[0].inputs[0].value.r, .25, 0);
     reading_destroy(&r);
 }
 

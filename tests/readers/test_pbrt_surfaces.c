@@ -139,12 +139,13 @@ static void normal_maps(void **state)
     reading r = read_world(text);
     expect_silence(&r);
     material m = last_material(&r);
-    assert_int_equal(r.scene->texture_image_count, 1);
+    assert_int_equal(r.scene->textures.image_count, 1);
     assert_true(m.normal_scale == 1.0f);
     surface_hit hit = {.uv = {0.25f, 0.5f}};
-    assert_rgb(texture_evaluate_rgb(r.scene, m.normal_map_texture, &hit), 128 / 255.0, 128 / 255.0, 1, 1e-6);
+    assert_rgb(texture_evaluate_rgb(&r.scene->textures, m.normal_map_texture, &hit), 128 / 255.0, 128 / 255.0, 1, 1e-6);
     hit.uv.x = 1.75f; /* it repeats */
-    assert_rgb(texture_evaluate_rgb(r.scene, m.normal_map_texture, &hit), 191 / 255.0, 128 / 255.0, 230 / 255.0, 1e-6);
+    assert_rgb(texture_evaluate_rgb(&r.scene->textures, m.normal_map_texture, &hit), 191 / 255.0, 128 / 255.0,
+               230 / 255.0, 1e-6);
     reading_destroy(&r);
     snprintf(text, sizeof text,
              FLOATS "Material \"diffuse\" \"string normalmap\" \"%s\" \"texture displacement\" \"f\"", path);
@@ -181,9 +182,9 @@ static void slopes_are_as_fine_as_pictures(void **state)
              "Texture \"m\" \"float\" \"mix\" \"texture tex1\" \"s\" \"texture tex2\" \"n\"",
              path);
     reading r = read_world(text);
-    assert_near(r.scene->textures[0].step, 0.5 / 16, 1e-7);
-    assert_near(r.scene->textures[1].step, 0.5 / 16, 1e-7);
-    assert_near(r.scene->textures[3].step, 0.0005, 1e-9);
+    assert_near(r.scene->textures.items[0].step, 0.5 / 16, 1e-7);
+    assert_near(r.scene->textures.items[1].step, 0.5 / 16, 1e-7);
+    assert_near(r.scene->textures.items[3].step, 0.0005, 1e-9);
     reading_destroy(&r);
 }
 

@@ -213,7 +213,7 @@ static void alpha_is_found_by_its_name(void **state)
         image_reset(&read);
         reading r = read_world(PICTURE("alpha.exr"));
         assert_int_equal(r.status, AG_OK);
-        assert_int_equal(texture_image_has_alpha(r.scene->texture_images[0]), CASES[k].has_alpha);
+        assert_int_equal(texture_image_has_alpha(r.scene->textures.images[0]), CASES[k].has_alpha);
         reading_destroy(&r);
     }
 }
@@ -367,7 +367,7 @@ static void exploding_graphs_are_refused(void **state)
     reading r = read_world(world);
     assert_int_equal(r.status, AG_ERROR_SCENE);
     assert_non_null(strstr(r.said[AG_LOG_ERROR], "texture \"t12\" is made of more than 4096 others"));
-    assert_int_equal(r.scene->texture_count, 12);
+    assert_int_equal(r.scene->textures.count, 12);
     const surface_hit hit = hit_at(0, 0, 0.3f, 0.4f, 0.6f);
     assert_true(isfinite(last_float(&r, hit)));
     reading_destroy(&r);

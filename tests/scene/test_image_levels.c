@@ -148,8 +148,8 @@ static hash128 content_of(const char *encoding)
              encoding);
     reading r = read_world(world);
     assert_int_equal(r.status, AG_OK);
-    assert_true(r.scene->texture_images[0]->is_by_file);
-    const hash128 content = texture_image_content(r.scene->texture_images[0]);
+    assert_true(r.scene->textures.images[0]->is_by_file);
+    const hash128 content = texture_image_content(r.scene->textures.images[0]);
     reading_destroy(&r);
     return content;
 }

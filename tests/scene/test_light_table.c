@@ -127,7 +127,7 @@ static scene *row_scene(test_run *r, const light_row *row)
     if (row->builder == DIMMING)
         s->lights[0].as.spot.dims_by_cosine = true;
     if (row->texture)
-        s->lights[0].as.area.radiance_texture = s->texture_count - 1;
+        s->lights[0].as.area.radiance_texture = s->textures.count - 1;
     assert_int_equal(scene_commit(s, &r->run, NULL), AG_OK);
     return s;
 }

@@ -29,7 +29,7 @@ static scene *lamp_scene(test_run *r, const char *textures, const char *world)
     snprintf(all, sizeof all, "%s%s", textures, world);
     scene *s = scene_with_light(r, all, NULL);
     assert_int_equal(s->light_count, 1);
-    s->lights[0].as.area.radiance_texture = s->texture_count - 1;
+    s->lights[0].as.area.radiance_texture = s->textures.count - 1;
     assert_int_equal(scene_commit(s, &r->run, NULL), AG_OK);
     assert_non_null(s->lights[0].as.area.map);
     return s;

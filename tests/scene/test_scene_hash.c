@@ -197,7 +197,7 @@ static void test_no_word_is_forgotten(void **state)
                 {sizeof(material_kind), offsetof(material, reflectance) - sizeof(material_kind)},
                 {offsetof(material, mixed) + sizeof(uint32_t[2]), 4});
     values_keep_their_names(&s->materials[s->material_count - 1], s);
-    WORDS_COUNT(texture, &s->textures[0], {0, 0});
+    WORDS_COUNT(texture, &s->textures.items[0], {0, 0});
     WORDS_COUNT(medium, &s->media[0], FIELD(medium, kind));
     WORDS_COUNT(scene_instance, &s->instances[0], {0, 0});
     /* with more motion segments there would be more vertices or points: see test_mesh_motion.c */
@@ -304,8 +304,8 @@ static void test_pixels(void **state)
     unsigned char bytes[4] = {1, 2, 3, 4};
     float values[1] = {0.5f};
     texture_image picture = {.width = 1, .height = 1, .channel_count = 3, .bytes = bytes}, *pictures[1] = {&picture};
-    s->texture_images = pictures;
-    s->texture_image_count = 1;
+    s->textures.images = pictures;
+    s->textures.image_count = 1;
     words_count(s, "bytes", bytes, 1, NULL, 0);
     WORDS_COUNT(texture_image, &picture, FIELD(texture_image, path), FIELD(texture_image, encoding),
                 FIELD(texture_image, version), FIELD(texture_image, share),
@@ -317,8 +317,8 @@ static void test_pixels(void **state)
     words_count(s, "primaries", s->space.primaries, sizeof s->space.primaries, NULL, 0);
     picture.colors.has_matrix = true;
     words_count(s, "matrix", picture.colors.matrix, sizeof picture.colors.matrix, NULL, 0);
-    s->texture_images = NULL;
-    s->texture_image_count = 0;
+    s->textures.images = NULL;
+    s->textures.image_count = 0;
     assert_true(hash128_is_equal(before, scene_hash_of_light(s)));
     scene_destroy(s);
     test_run_reset(&r);

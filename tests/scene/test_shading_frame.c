@@ -144,7 +144,7 @@ static material with_normal_map(scene *s, rgb color)
     for (int i = 0; i < 4; i++)
         t.inputs[i].texture_index = SCENE_NO_TEXTURE;
     material m = material_make(MATERIAL_DIFFUSE);
-    assert_int_equal(scene_add_texture(s, &t, &m.normal_map_texture), AG_OK);
+    assert_int_equal(texture_set_add(&s->textures, &t, &m.normal_map_texture), AG_OK);
     return m;
 }
 

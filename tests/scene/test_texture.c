@@ -246,7 +246,7 @@ static void encodings(void **state)
         snprintf(world, sizeof world, "Texture \"a\" \"spectrum\" \"imagemap\" \"string filename\" \"%s\" %s",
                  cases[k].file, cases[k].encoding);
         reading r = good_world(world);
-        const texture_image *kept = r.scene->texture_images[0];
+        const texture_image *kept = r.scene->textures.images[0];
         assert_int_equal(kept->bytes != NULL, strcmp(cases[k].file, "8.png") == 0);
         assert_int_equal(kept->values == NULL, kept->bytes != NULL);
         const double tolerance = strcmp(cases[k].file, "half.exr") == 0 ? 3e-4 : 1e-5;
@@ -275,15 +275,15 @@ static void channels_and_sharing(void **state)
         "Texture \"c\" \"spectrum\" \"imagemap\" \"string filename\" \"grey.png\" \"string encoding\" \"sRGB\" "
         "Texture \"d\" \"spectrum\" \"imagemap\" \"string filename\" \"grey.png\" \"string encoding\" \"linear\"");
     const surface_hit hit = hit_at(0.1f, 0.9f, 0, 0, 0);
-    assert_int_equal(r.scene->texture_count, 5);
-    assert_int_equal(r.scene->texture_image_count, 3); /* the default is sRGB */
-    assert_int_equal(r.scene->texture_images[0]->channel_count, 3);
-    assert_int_equal(r.scene->texture_images[1]->channel_count, 1);
-    assert_rgb(texture_evaluate_rgb(r.scene, 0, &hit), 1.0, 0.2, 0.6, 1e-7);
-    assert_near(texture_evaluate_float(r.scene, 1, &hit), 0.4, 1e-6); /* alpha */
+    assert_int_equal(r.scene->textures.count, 5);
+    assert_int_equal(r.scene->textures.image_count, 3); /* the default is sRGB */
+    assert_int_equal(r.scene->textures.images[0]->channel_count, 3);
+    assert_int_equal(r.scene->textures.images[1]->channel_count, 1);
+    assert_rgb(texture_evaluate_rgb(&r.scene->textures, 0, &hit), 1.0, 0.2, 0.6, 1e-7);
+    assert_near(texture_evaluate_float(&r.scene->textures, 1, &hit), 0.4, 1e-6); /* alpha */
     const double grey = srgb(51.0 / 255.0);
-    assert_rgb(texture_evaluate_rgb(r.scene, 3, &hit), grey, grey, grey, 1e-6);
-    assert_rgb(texture_evaluate_rgb(r.scene, 4, &hit), 0.2, 0.2, 0.2, 1e-7);
+    assert_rgb(texture_evaluate_rgb(&r.scene->textures, 3, &hit), grey, grey, grey, 1e-6);
+    assert_rgb(texture_evaluate_rgb(&r.scene->textures, 4, &hit), 0.2, 0.2, 0.2, 1e-7);
     reading_destroy(&r);
 }
 
@@ -297,9 +297,9 @@ static void assert_channels(const char *name, const char *encoding, const double
     static const texture_channel CHANNELS[6] = {TEXTURE_CHANNEL_A, TEXTURE_CHANNEL_R,    TEXTURE_CHANNEL_G,
                                                 TEXTURE_CHANNEL_B, TEXTURE_CHANNEL_MEAN, TEXTURE_CHANNEL_ALL};
     reading r = good_world(world);
-    assert_int_equal(r.scene->textures[0].channel, TEXTURE_CHANNEL_ALL);
+    assert_int_equal(r.scene->textures.items[0].channel, TEXTURE_CHANNEL_ALL);
     for (int c = 0; c < 6; c++) {
-        r.scene->textures[0].channel = CHANNELS[c];
+        r.scene->textures.items[0].channel = CHANNELS[c];
         assert_near(last_float(&r, hit_at(0.1f, 0.9f, 0, 0, 0)), expected[c], 2e-5);
     }
     reading_destroy(&r);
@@ -333,15 +333,15 @@ static void float_textures_read_one_channel(void **state)
     static const float two[8] = {0.1f, 0.2f, 0.3f, 0.0f, 0.4f, 0.5f, 0.6f, 1.0f};
     write_image("two.exr", 2, 1, 4, IMAGE_FLOAT, two);
     reading r = good_world("Texture \"a\" \"float\" \"imagemap\" \"string filename\" \"two.exr\"");
-    r.scene->textures[0].channel = TEXTURE_CHANNEL_A;
+    r.scene->textures.items[0].channel = TEXTURE_CHANNEL_A;
     assert_near(last_float(&r, hit_at(0.375f, 0.5f, 0, 0, 0)), 0.25, 1e-6);
-    r.scene->textures[0].channel = TEXTURE_CHANNEL_B;
+    r.scene->textures.items[0].channel = TEXTURE_CHANNEL_B;
     assert_near(last_float(&r, hit_at(0.375f, 0.5f, 0, 0, 0)), 0.375, 1e-6);
     reading_destroy(&r);
 
     r = read_world("Texture \"a\" \"float\" \"imagemap\" \"string filename\" \"bad.exr\"");
     assert_int_equal(r.count[AG_LOG_WARNING], 1); /* says that a value is not finite */
-    r.scene->textures[0].channel = TEXTURE_CHANNEL_A;
+    r.scene->textures.items[0].channel = TEXTURE_CHANNEL_A;
     assert_near(last_float(&r, hit_at(0.5f, 0.5f, 0, 0, 0)), 0.0, 0.0);
     reading_destroy(&r);
 }
@@ -361,7 +361,7 @@ static void *look_up_all(void *user)
     for (int i = 0; i < LOOKUP_COUNT; i++) {
         const float x = (float)i * 0.01f;
         const surface_hit hit = hit_at(x * 0.37f - 2.0f, 3.0f - x * 0.21f, x, x * 0.5f - 4.0f, 7.0f - x);
-        l->values[i] = texture_evaluate_rgb(l->scene, l->scene->texture_count - 1, &hit);
+        l->values[i] = texture_evaluate_rgb(&l->scene->textures, l->scene->textures.count - 1, &hit);
     }
     return NULL;
 }

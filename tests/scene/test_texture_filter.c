@@ -230,38 +230,38 @@ static void odd_footprints(void **state)
 static void which_textures_are_filtered(void **state)
 {
     (void)state;
-    scene s = {0};
+    texture_set set = {0};
     texture textures[9];
     texture_image picture = {.least = 0.0f, .most = 1.0f}, *pictures[] = {&picture};
-    s.textures = textures;
-    s.texture_images = pictures;
+    set.items = textures;
+    set.images = pictures;
     for (int k = 0; k < 2; k++) {
         textures[k] = texture_make(TEXTURE_IMAGE);
-        texture_find_pictures(&s, &textures[k]);
+        texture_find_pictures(&set, &textures[k]);
     }
     textures[2] = texture_make(TEXTURE_SCALE); /* a picture by a number */
     textures[2].inputs[0].texture_index = 0;
-    texture_find_pictures(&s, &textures[2]);
+    texture_find_pictures(&set, &textures[2]);
     textures[3] = texture_make(TEXTURE_SCALE); /* by another */
     textures[3].inputs[0].texture_index = 2;
     textures[3].inputs[1].texture_index = 1;
-    texture_find_pictures(&s, &textures[3]);
+    texture_find_pictures(&set, &textures[3]);
     textures[4] = texture_make(TEXTURE_MIX); /* of two numbers, by a picture */
     textures[4].inputs[2].texture_index = 0;
-    texture_find_pictures(&s, &textures[4]);
+    texture_find_pictures(&set, &textures[4]);
     textures[5] = textures[4]; /* of a picture, by a picture */
     textures[5].inputs[0].texture_index = 1;
-    texture_find_pictures(&s, &textures[5]);
+    texture_find_pictures(&set, &textures[5]);
     textures[6] = texture_make(TEXTURE_CHECKERBOARD); /* of what cannot be */
     textures[6].inputs[1].texture_index = 5;
-    texture_find_pictures(&s, &textures[6]);
+    texture_find_pictures(&set, &textures[6]);
     textures[7] = texture_make(TEXTURE_CHECKERBOARD); /* of a picture: its cells may go along with it */
     textures[7].inputs[1].texture_index = 0;
-    texture_find_pictures(&s, &textures[7]);
+    texture_find_pictures(&set, &textures[7]);
     textures[8] = texture_make(TEXTURE_SCALE); /* of a picture, by a texture that varies */
     textures[8].inputs[0].texture_index = 0;
     textures[8].inputs[1].texture_index = 7;
-    texture_find_pictures(&s, &textures[8]);
+    texture_find_pictures(&set, &textures[8]);
     static const bool EXPECTED[9] = {true, true, true, false, true, false, false, false, false};
     for (int k = 0; k < 9; k++) {
         assert_true(textures[k].has_pictures);
@@ -269,10 +269,10 @@ static void which_textures_are_filtered(void **state)
     }
 }
 
-static float most_of(scene *s, const texture *t)
+static float most_of(texture_set *set, const texture *t)
 {
     texture found = *t;
-    texture_find_pictures(s, &found);
+    texture_find_pictures(set, &found);
     return found.most;
 }
 
@@ -280,26 +280,26 @@ static float most_of(scene *s, const texture *t)
 static void bounds_of_values(void **state)
 {
     (void)state;
-    scene s = {0};
+    texture_set set = {0};
     texture_image picture = {.least = 0.0f, .most = 0.75f}, *pictures[] = {&picture};
     texture t = texture_make(TEXTURE_IMAGE), product = texture_make(TEXTURE_SCALE);
-    s.textures = &t;
-    s.texture_images = pictures;
-    assert_true(most_of(&s, &t) == 0.75f);
+    set.items = &t;
+    set.images = pictures;
+    assert_true(most_of(&set, &t) == 0.75f);
     t.scale = 2.0f;
-    assert_true(most_of(&s, &t) == 1.5f);
+    assert_true(most_of(&set, &t) == 1.5f);
     t.most = 1.5f;
     product.inputs[0].texture_index = 0;
     product.inputs[1].value = rgb_gray(0.5f);
-    assert_true(most_of(&s, &product) == 0.75f);
+    assert_true(most_of(&set, &product) == 0.75f);
     product.inputs[1].value = rgb_gray(-0.5f);
-    assert_true(isinf(most_of(&s, &product)));
+    assert_true(isinf(most_of(&set, &product)));
     t.invert = true;
-    assert_true(isinf(most_of(&s, &t)));
+    assert_true(isinf(most_of(&set, &t)));
     t.scale = 1.0f;
-    assert_true(most_of(&s, &t) == 1.0f);
+    assert_true(most_of(&set, &t) == 1.0f);
     picture.least = -0.01f;
-    assert_true(isinf(most_of(&s, &t)));
+    assert_true(isinf(most_of(&set, &t)));
 }
 
 int main(void)

@@ -28,7 +28,7 @@ static void two_tokens_are_an_error(void **state)
 
 static const texture_image *whole_of(const reading *r)
 {
-    return r->scene->texture_images[r->scene->textures[r->scene->texture_count - 1].image_index];
+    return r->scene->textures.images[r->scene->textures.items[r->scene->textures.count - 1].image_index];
 }
 
 /* Where any tile has alpha, numbers are read from alpha on all tiles; a tile without it counts as 1. */

@@ -62,6 +62,8 @@ for line in '#include "light/light.h"' '#include <light/light.h>' '#include "../
     refused ag_scene scene/material/coat.c "$line" 'scene/light/light.h: that edge is cut'
 done
 
+refused ag_scene scene/texture/image_colors.c '#include <scene.h>' 'scene/scene.h: that edge is cut'
+
 for line in '#include "math/vec3.h"' '#include <math/vec3.h>' '#include "coat_table.h"' '#include <string.h>' \
     '/* #include "readers/scene_file.h" */'; do
     accepted ag_scene scene/material/coat.c "$line"

@@ -16,7 +16,8 @@ static ag_status load_from_file(gltf_reader *r, const gltf_value *uri, const cha
     char *path = gltf_uri_to_path(r, text, &wrong);
     if (!path)
         return wrong ? gltf_error(r, uri, "%s", wrong) : AG_ERROR_MEMORY;
-    ag_status status = texture_image_load(r->run, r->scene, path, encoding, out_image_index, message, sizeof message);
+    ag_status status =
+        texture_image_load(r->run, &r->scene->textures, path, encoding, out_image_index, message, sizeof message);
     if (status != AG_OK && status != AG_CANCELLED)
         gltf_error(r, uri, "%s", message[0] ? message : ag_status_text(status));
     free(path);
@@ -54,7 +55,7 @@ ag_status gltf_load_image(gltf_reader *r, uint32_t index, image_encoding encodin
         return load_from_file(r, &uri, text, encoding, out_image_index);
     AG_TRY(text ? decode_uri(r, index, &uri, text, &bytes) : gltf_buffer_view(r, view_index, &bytes, &stride));
     snprintf(name, sizeof name, "%.400s#images[%u]", r->where.file, index);
-    ag_status status = texture_image_load_memory(r->run, r->scene, name, bytes.data, bytes.size, encoding,
+    ag_status status = texture_image_load_memory(r->run, &r->scene->textures, name, bytes.data, bytes.size, encoding,
                                                  out_image_index, message, sizeof message);
     if (status != AG_OK && status != AG_CANCELLED)
         gltf_error(r, text ? &uri : &at, "%s", message[0] ? message : ag_status_text(status));

@@ -105,5 +105,5 @@ ag_status gltf_get_texture(gltf_reader *r, const gltf_value *parent, const char 
     AG_TRY(choose_uv_set(r, &info, wanted_set, uv_set));
     image_encoding encoding = {.curve = use.is_srgb ? IMAGE_CURVE_SRGB : IMAGE_CURVE_LINEAR};
     AG_TRY(gltf_load_image(r, source, encoding, &t.image_index));
-    return scene_add_texture(r->scene, &t, out_texture);
+    return texture_set_add(&r->scene->textures, &t, out_texture);
 }

@@ -78,14 +78,14 @@ static ag_status load_picture(importer *i, const import_picture *p, image_encodi
             snprintf(message, message_size, "there is no such picture within the file");
             return AG_ERROR_INPUT;
         }
-        return texture_image_load_memory(i->run, i->scene, p->path, i->embedded[number].bytes, i->embedded[number].size,
-                                         encoding, out_image_index, message, message_size);
+        return texture_image_load_memory(i->run, &i->scene->textures, p->path, i->embedded[number].bytes,
+                                         i->embedded[number].size, encoding, out_image_index, message, message_size);
     }
     if (!find_picture(i, p->path, path, sizeof path, message, message_size))
         return AG_ERROR_INPUT;
     if (encoding.curve == IMAGE_CURVE_DEFAULT) /* a colour's */
-        encoding = image_colors_rule(i->scene, path);
-    return texture_image_load(i->run, i->scene, path, encoding, out_image_index, message, message_size);
+        encoding = image_colors_rule(&i->scene->textures.colors, path);
+    return texture_image_load(i->run, &i->scene->textures, path, encoding, out_image_index, message, message_size);
 }
 
 static texture_wrap wrap_of(uint32_t wrap)
@@ -129,10 +129,10 @@ static ag_status add_picture(importer *i, const import_picture *p, picture_use u
         warn_picture(i, p, message);
         return AG_OK;
     }
-    const texture_image *read = i->scene->texture_images[t.image_index];
+    const texture_image *read = i->scene->textures.images[t.image_index];
     const bool has_alpha = texture_image_has_alpha(read);
     t.channel = use == PICTURE_OPACITY && has_alpha ? TEXTURE_CHANNEL_A : TEXTURE_CHANNEL_MEAN;
-    return scene_add_texture(i->scene, &t, out_texture);
+    return texture_set_add(&i->scene->textures, &t, out_texture);
 }
 
 /* Materials */

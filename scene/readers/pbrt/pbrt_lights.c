@@ -227,11 +227,11 @@ static ag_status read_area_picture(pbrt_parser *parser, parameter_list *list, pb
     t.is_spectrum = true;
     t.wraps = texture_wraps_same(TEXTURE_WRAP_CLAMP);
     AG_TRY(pbrt_load_image(parser, list, "filename", name, (image_encoding){0}, &t));
-    if (parser->scene->texture_images[t.image_index]->udim)
+    if (parser->scene->textures.images[t.image_index]->udim)
         return pbrt_refuse(parser, list, "filename", "the picture of an area light cannot be in tiles");
-    AG_TRY(scene_add_texture(parser->scene, &t, &l->radiance_texture));
+    AG_TRY(texture_set_add(&parser->scene->textures, &t, &l->radiance_texture));
     if (l->power > 0.0f)
-        l->mean_luminance = mean_luminance(&parser->scene->space, parser->scene->texture_images[t.image_index]);
+        l->mean_luminance = mean_luminance(&parser->scene->space, parser->scene->textures.images[t.image_index]);
     if (!(l->mean_luminance > 0.0))
         return pbrt_refuse(parser, list, "power", "the picture is black");
     return AG_OK;

@@ -233,7 +233,7 @@ static ag_status scale_texture(pbrt_parser *parser, const parameter_list *list, 
         t.inputs[i].texture_index = SCENE_NO_TEXTURE;
     t.inputs[0].texture_index = *texture_index;
     t.inputs[1].value = rgb_gray(scale);
-    ag_status status = scene_add_texture(parser->scene, &t, texture_index);
+    ag_status status = texture_set_add(&parser->scene->textures, &t, texture_index);
     return status == AG_ERROR_SCENE
                ? pbrt_refuse(parser, list, "scale", "the texture to be scaled is made of too many others")
                : status;
@@ -402,9 +402,9 @@ static ag_status read_direction_map(pbrt_parser *parser, parameter_list *list, c
     t.is_data = true;
     t.is_spectrum = true;
     AG_TRY(pbrt_load_image(parser, list, key, name, (image_encoding){.curve = IMAGE_CURVE_LINEAR}, &t));
-    if (parser->scene->texture_images[t.image_index]->channel_count < 3)
+    if (parser->scene->textures.images[t.image_index]->channel_count < 3)
         return pbrt_refuse(parser, list, key, "\"%s\" is no %s: it has no red, green and blue", name, what);
-    return scene_add_texture(parser->scene, &t, out_texture);
+    return texture_set_add(&parser->scene->textures, &t, out_texture);
 }
 
 /* Reads the direction of "uroughness", which pbrt leaves at dp/du. */

@@ -48,7 +48,7 @@ static ag_status get_texture(pbrt_parser *parser, parameter_list *list, const ch
     AG_TRY(find_texture(parser, list, name, is_spectrum, out_is_there, &index));
     if (!*out_is_there)
         return AG_OK;
-    const texture *found = &parser->scene->textures[index];
+    const texture *found = &parser->scene->textures.items[index];
     if (found->kind == TEXTURE_CONSTANT)
         *out_constant = found->inputs[0].value;
     else
@@ -268,7 +268,7 @@ static ag_status read_encoding(pbrt_parser *parser, parameter_list *list, bool i
     AG_TRY(parameter_get_string(list, parser->log, "encoding", &text));
     if (!text || image_encoding_parse(text, encoding))
         return AG_OK;
-    if (is_color && image_colors_parse(parser->scene, text, encoding, spaces, sizeof spaces))
+    if (is_color && image_colors_parse(&parser->scene->textures.colors, text, encoding, spaces, sizeof spaces))
         return AG_OK;
     return pbrt_refuse(parser, list, "encoding",
                        "unknown encoding \"%s\"; known are sRGB, linear and, with a number, gamma%s%s", text,
@@ -289,25 +289,25 @@ ag_status pbrt_load_image(pbrt_parser *parser, const parameter_list *list, const
                           const char *file_name, image_encoding encoding, texture *t)
 {
     char message[1024] = "";
-    scene *s = parser->scene;
-    uint32_t known_count = s->texture_image_count;
+    texture_set *set = &parser->scene->textures;
+    uint32_t known_count = set->image_count;
     const pbrt_picture *picture = pbrt_find_picture(parser, file_name);
     char *path = picture ? name_picture(file_name) : pbrt_find_file(parser, file_name);
     if (path && t->is_spectrum && !t->is_data && encoding.curve == IMAGE_CURVE_DEFAULT)
-        encoding = image_colors_rule(s, path);
+        encoding = image_colors_rule(&set->colors, path);
     ag_status status = AG_ERROR_MEMORY;
     if (path && picture)
-        status = texture_image_load_pixels(parser->run, s, path, picture->pixels, picture->version, encoding,
+        status = texture_image_load_pixels(parser->run, set, path, picture->pixels, picture->version, encoding,
                                            &t->image_index, message, sizeof message);
     else if (path)
-        status = texture_image_load(parser->run, s, path, encoding, &t->image_index, message, sizeof message);
+        status = texture_image_load(parser->run, set, path, encoding, &t->image_index, message, sizeof message);
     free(path);
     if (status != AG_OK && status != AG_ERROR_MEMORY && status != AG_CANCELLED)
         pbrt_refuse(parser, list, parameter_name, "%s", message);
-    if (status == AG_OK && t->image_index >= known_count && s->texture_images[t->image_index]->bad_count > 0)
+    if (status == AG_OK && t->image_index >= known_count && set->images[t->image_index]->bad_count > 0)
         log_at(parser->log, AG_LOG_WARNING, parameter_list_find(list, parameter_name)->where,
                "\"%s\": %llu values are infinite or not a number, and count as 0", file_name,
-               (unsigned long long)s->texture_images[t->image_index]->bad_count);
+               (unsigned long long)set->images[t->image_index]->bad_count);
     return status;
 }
 
@@ -424,7 +424,7 @@ static ag_status read_texture(pbrt_parser *parser, parameter_list *list, bool is
 static ag_status add_texture(pbrt_parser *parser, const parameter_list *list, const char *name, const texture *t)
 {
     uint32_t index;
-    ag_status status = scene_add_texture(parser->scene, t, &index);
+    ag_status status = texture_set_add(&parser->scene->textures, t, &index);
     if (status == AG_ERROR_SCENE)
         return pbrt_error(parser, list->where, strlen(list->directive), "texture \"%s\" is made of more than %d others",
                           name, TEXTURE_MAX_COST);
