@@ -75,12 +75,13 @@ file(READ ${STAMP}.files files)
 file(READ ${STAMP}.folders allowed)
 set(roots threads threads/include scene scene/readers photonmap renderer renderer/include tests perf)
 list(TRANSFORM roots PREPEND ${ROOT}/)
-# Surfaces and textures know points (surface.h) and rays (ray.h), not the tree nor how rays are cast; textures are a set
-# of their own (texture_set.h), which knows no scene. Below them, each
-# folder of ag_image knows those before it: math and text, color, image. Materials know nothing of lights, nor the other
-# way round; what casts rays knows no lights. A format's reader knows no other's, but that meshes of pbrt may be PLY
-# files. What finds the light knows nothing of pictures' files. The programs take name_hash.h, status.h and utf8.h from
-# threads, which need no more of the library than its public headers.
+# In ag_image each folder knows those before it: math and text, color, image. Surfaces and textures know points
+# (surface.h) and rays (ray.h), not the tree nor how rays are cast; textures are a set of their own (texture_set.h), which
+# knows no scene, and media know numbers alone. Materials know nothing of lights, nor the other way round, and of media
+# the phase functions; lights cast rays, but know no tree; what casts rays knows no lights. Photons know of no cameras,
+# tiles or hints for a picture. A format's reader knows no other's, but that meshes of pbrt may be PLY files. What finds
+# the light knows nothing of pictures' files. The programs take name_hash.h, status.h and utf8.h from threads, which need
+# no more of the library than its public headers.
 set(cut
   "^scene/(shape|texture|material|image|color|text|math)/.*->scene/rays/(bvh|bvh_embree|rays|transmittance|embree_api)\\.h$"
   "^scene/(image|color|text|math)/.*->scene/(scene|surface|shape/.*|material/.*|light/.*|texture/.*)\\.h$"
@@ -88,12 +89,16 @@ set(cut
   "^scene/math/.*->scene/text/"
   "^scene/color/.*->scene/image/"
   "^scene/texture/.*->scene/((shape|material|medium|light|rays)/|scene\\.h$|scene_.*\\.h$|camera\\.h$)"
-  "^scene/shape/.*->scene/(material|light)/"
-  "^scene/material/.*->scene/light/"
-  "^scene/light/.*->scene/material/"
+  "^scene/shape/.*->scene/(material|medium|light)/"
+  "^scene/medium/.*->scene/((color|image|text|texture|shape|rays|material|light)/|[a-z_]+\\.h$)"
+  "^scene/material/.*->scene/(light/|medium/([^p]|p[^h]))"
+  "^scene/light/.*->scene/(material|medium)/"
+  "^scene/light/.*->scene/rays/(bvh|bvh_embree|clear_space|embree_api|geometry_embree|ray_cone|slab_faces)\\.h$"
   "^scene/light/environment\\.[ch]->scene/light/portal\\.h$"
   "^renderer/film/(film|sample_split)\\.[ch]->renderer/film/splitting\\.h$"
-  "^scene/rays/.*->scene/light/"
+  "^scene/rays/.*->scene/(light|texture)/"
+  "^(scene/[a-z_]+\\.|photonmap/|renderer/).*->scene/rays/(bvh_embree|embree_api|geometry_embree)\\.h$"
+  "^photonmap/.*->(scene/(camera|scene_hints|scene_request)|threads/tile_scheduler)\\.h$"
   "^scene/readers/gltf/.*->scene/readers/(pbrt|model)/"
   "^scene/readers/model/.*->scene/readers/(pbrt|gltf)/"
   "^scene/readers/pbrt/.*->scene/readers/(gltf/|model/([^p]|p[^l]|pl[^y]|ply_[^f]))"

@@ -5,6 +5,7 @@
 #include "material/coat_table.h"
 #include "material/fresnel.h"
 #include "material/material.h"
+#include "math/attenuation.h"
 #include "texture/texture.h"
 
 /* The cosine at which light that has lost its direction meets the metal: about its mean over the hemisphere. */

@@ -2,6 +2,7 @@
 #include "material/coat_walk.h"
 
 #include "material/fresnel.h"
+#include "math/attenuation.h"
 
 coat_numbers coat_numbers_make(uint64_t key, uint64_t stream, uint32_t k)
 {

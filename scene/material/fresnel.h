@@ -4,6 +4,7 @@
 #ifndef AFTERGLOW_FRESNEL_H
 #define AFTERGLOW_FRESNEL_H
 
+#include "math/attenuation.h"
 #include "math/vec3.h"
 
 /* Returns the unpolarised reflectance of a dielectric; cos_in >= 0; eta: index on the far side over the near one. */
@@ -58,18 +59,6 @@ static inline float fresnel_schlick_weight(float cos_in)
 {
     float away = 1.0f - fminf(cos_in, 1.0f), square = away * away;
     return square * square * away;
-}
-
-/* e^-x for x >= 0, to float precision, in plain steps (libm's variants differ in the last bit): the 1024th power of a
- * short series. */
-static inline float attenuation(float x)
-{
-    if (!(x < 100.0f))
-        return 0.0f;
-    double y = (double)x * (1.0 / 1024.0), e = 1.0 - y * (1.0 - y * (0.5 - y * (1.0 / 6.0 - y * (1.0 / 24.0))));
-    for (int i = 0; i < 10; i++)
-        e *= e;
-    return (float)e;
 }
 
 /* Returns the share of diffuse light, starting under an interface at optical depth `thickness`, that is reflected down

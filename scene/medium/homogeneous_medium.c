@@ -1,6 +1,6 @@
 /* homogeneous_medium.c: a medium that is the same all over: Beer's law, and flights whose lengths have its density.
  * Threads: pure functions. */
-#include "material/fresnel.h"
+#include "math/attenuation.h"
 #include "medium/medium_type.h"
 
 static rgb extinction_of(const medium *m) { return rgb_add(m->as.homogeneous.sigma_a, m->as.homogeneous.sigma_s); }
