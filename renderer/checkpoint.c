@@ -2,9 +2,9 @@
 #define _POSIX_C_SOURCE 200809L
 #include "checkpoint.h"
 
+#include "atomic_file.h"
 #include "film/film_copy.h"
 #include "integrator/integrator.h"
-#include "output/atomic_file.h"
 #include "rays/bvh.h"
 #include "render_maps.h"
 #include "scene_hash.h"

@@ -4,8 +4,8 @@
 #define _GNU_SOURCE
 #include "map_file.h"
 
+#include "atomic_file.h"
 #include "descriptor.h"
-#include "output/atomic_file.h"
 #include "scene_hash.h"
 #include "settings_table.h"
 #include "status.h"

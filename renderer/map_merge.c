@@ -2,7 +2,7 @@
  * Flow: photon_file -> [here] -> photon_merge -> photon_file. Threads: one. */
 #include "context.h"
 
-#include "output/atomic_file.h"
+#include "atomic_file.h"
 #include "photon_file.h"
 #include "photon_merge.h"
 #include "public_structs.h"

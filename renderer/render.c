@@ -11,8 +11,6 @@
 #include "integrator/direct_pilot.h"
 #include "integrator/integrator.h"
 #include "odd_scene.h"
-#include "output/atomic_file.h"
-#include "output/photon_dump.h"
 #include "render_maps.h"
 #include "render_tiles.h"
 #include "rendering_counts.h"
@@ -359,27 +357,6 @@ ag_status ag_rendering_go_back(ag_rendering *r)
         return AG_ERROR_ARGUMENT;
     film_copy_restore(r->film, r->whole);
     return AG_OK;
-}
-
-ag_status ag_rendering_write_photons(const ag_rendering *r, const char *path)
-{
-    if (!r || !path || !integrator_of(r->settings.integrator)->has_photon_map)
-        return AG_ERROR_ARGUMENT;
-    if (!photon_file_is_intact(&r->maps->file)) {
-        log_message(r->context->log, AG_LOG_ERROR,
-                    "'%s': the photon map was cut short or overwritten: no photons of it "
-                    "are written",
-                    r->map_name ? r->map_name : "");
-        return AG_ERROR_SYSTEM;
-    }
-    char message[1024] = "";
-    phase_begin begin = context_begin_phase();
-    ag_status status =
-        photon_dump_write(&r->context->run, &r->maps->global, &r->maps->caustic, path, message, sizeof message);
-    context_add_to_phase(r->context, AG_PHASE_WRITE, begin);
-    if (message[0] && status != AG_CANCELLED)
-        log_message(r->context->log, AG_LOG_ERROR, "%s", message);
-    return status;
 }
 
 const ag_film *ag_rendering_film(const ag_rendering *r) { return r ? r->film : NULL; }

@@ -2,6 +2,7 @@
  * Text: help is for --help; manual is for the man page, *bold* and _italic_, where it says more than help. %LAYERS% and
  * %PHOTON_MAP_SETTINGS% are replaced by lists, see cli/option_help.c. */
 #include "integrator/integrator.h"
+#include "integrator/path_settings.h"
 #include "settings_table.h"
 
 #include <float.h>

@@ -80,8 +80,9 @@ list(TRANSFORM roots PREPEND ${ROOT}/)
 # knows no scene, and media know numbers alone. Materials know nothing of lights, nor the other way round, and of media
 # the phase functions; lights cast rays, but know no tree; what casts rays knows no lights. Photons know of no cameras,
 # tiles or hints for a picture. A format's reader knows no other's, but that meshes of pbrt may be PLY files. What finds
-# the light knows nothing of pictures' files. The programs take name_hash.h, status.h and utf8.h from threads, which need
-# no more of the library than its public headers.
+# the light knows nothing of pictures' files, which stand above a rendering, and nothing of a rendering, but for
+# photon_map_integrator.c, which has the maps made. The programs take name_hash.h, status.h and utf8.h from threads, which
+# need no more of the library than its public headers.
 set(cut
   "^scene/(shape|texture|material|image|color|text|math)/.*->scene/rays/(bvh|bvh_embree|rays|transmittance|embree_api)\\.h$"
   "^scene/(image|color|text|math)/.*->scene/(scene|surface|shape/.*|material/.*|light/.*|texture/.*)\\.h$"
@@ -103,7 +104,9 @@ set(cut
   "^scene/readers/model/.*->scene/readers/(pbrt|gltf)/"
   "^scene/readers/pbrt/.*->scene/readers/(gltf/|model/([^p]|p[^l]|pl[^y]|ply_[^f]))"
   "^renderer/film/.*->renderer/(integrator|output|cli)/"
+  "^renderer/integrator/([^p]|p[^h]).*->renderer/[a-z_]+\\.h$"
   "^renderer/integrator/.*->renderer/(output|cli)/"
+  "^renderer/([a-z_]+\\.|making/).*->renderer/(output|cli)/"
   "^renderer/output/.*->renderer/cli/"
   "^renderer/cli/.*->threads/([a-hj-mo-rtv-z]|i[^n]|n[^a]|s[^t]|st[^a]|u[^t])"
   "^scene/(surface|rays/ray|rays/rays)\\.h->scene/scene\\.h$"

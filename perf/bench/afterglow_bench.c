@@ -2,11 +2,11 @@
  * the work was right. Flow: options -> bench_run -> bench_certificate, bench_score -> JSON, page, line.
  * Threads: main, and those of each level's context. */
 #define _POSIX_C_SOURCE 200809L
+#include "atomic_file.h"
 #include "bench/bench_compare.h"
 #include "bench/bench_json.h"
 #include "bench/bench_options.h"
 #include "bench/bench_page.h"
-#include "output/atomic_file.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -7,7 +7,6 @@
 #include "integrator/shading.h"
 #include "parallel_for.h"
 #include "rays/transmittance.h"
-#include "settings_table.h"
 #include "status.h"
 
 #include <stdlib.h>

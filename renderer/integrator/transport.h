@@ -11,6 +11,7 @@
 #include "incident_light.h"
 #include "integrator/direct_guide.h"
 #include "integrator/gather_batch.h"
+#include "integrator/path_settings.h"
 #include "integrator/sampler.h"
 #include "integrator/vertex.h"
 #include "medium/medium_roulette.h"

@@ -3,8 +3,8 @@
  * image_file.h. */
 #include "output/image_file.h"
 
+#include "atomic_file.h"
 #include "image/image_module_loader.h"
-#include "output/atomic_file.h"
 #include "output/image_openexr.h"
 #include "status.h"
 

@@ -2,8 +2,8 @@
  * Flow: film -> output_color -> [here] -> image_file. Threads: as in afterglow.h. */
 #include "context.h"
 
+#include "atomic_file.h"
 #include "clock.h"
-#include "output/atomic_file.h"
 #include "output/image_file.h"
 #include "output/output_color.h"
 #include "output/picture_layers.h"

@@ -1,7 +1,9 @@
 /* photon_dump.c: see photon_dump.h. */
 #include "output/photon_dump.h"
 
-#include "output/atomic_file.h"
+#include "atomic_file.h"
+#include "integrator/integrator.h"
+#include "rendering.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -66,5 +68,26 @@ ag_status photon_dump_write(const run_context *run, const photon_map *global, co
     at = write_map(caustic, 1, at);
     ag_status status = atomic_file_write(run, path, bytes, (size_t)(at - bytes), message, message_size);
     free(bytes);
+    return status;
+}
+
+ag_status ag_rendering_write_photons(const ag_rendering *r, const char *path)
+{
+    if (!r || !path || !integrator_of(r->settings.integrator)->has_photon_map)
+        return AG_ERROR_ARGUMENT;
+    if (!photon_file_is_intact(&r->maps->file)) {
+        log_message(r->context->log, AG_LOG_ERROR,
+                    "'%s': the photon map was cut short or overwritten: no photons of it "
+                    "are written",
+                    r->map_name ? r->map_name : "");
+        return AG_ERROR_SYSTEM;
+    }
+    char message[1024] = "";
+    phase_begin begin = context_begin_phase();
+    ag_status status =
+        photon_dump_write(&r->context->run, &r->maps->global, &r->maps->caustic, path, message, sizeof message);
+    context_add_to_phase(r->context, AG_PHASE_WRITE, begin);
+    if (message[0] && status != AG_CANCELLED)
+        log_message(r->context->log, AG_LOG_ERROR, "%s", message);
     return status;
 }

@@ -2,8 +2,8 @@
  * Flow: after rendering. Threads: as in afterglow.h. */
 #include "context.h"
 
+#include "atomic_file.h"
 #include "film/layer_table.h"
-#include "output/atomic_file.h"
 #include "settings_table.h"
 
 #include <jansson.h>

@@ -1,5 +1,5 @@
 /* test_image_write_failures.c: where a picture cannot be written the reason is told, and all files are as they were.
- * Flow: tests of renderer/output/image_file.c and atomic_file.c. Threads: one. */
+ * Flow: tests of renderer/output/image_file.c and threads/atomic_file.c. Threads: one. */
 #define _GNU_SOURCE
 #include "fixtures/image_file_fixture.h"
 #include "image/image_module_loader.h"

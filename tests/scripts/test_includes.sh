@@ -79,6 +79,9 @@ rays/slab_faces.c texture/texture.h
 scene.c rays/embree_api.h
 END
 
+refused ag_renderer renderer/render.c '#include <output/output_color.h>' 'output_color.h: that edge is cut'
+refused ag_renderer renderer/integrator/eye_pilot.c '#include "context.h"' 'renderer/context.h: that edge is cut'
+
 for line in '#include "math/vec3.h"' '#include <math/vec3.h>' '#include "coat_table.h"' '#include <string.h>' \
     '/* #include "readers/scene_file.h" */'; do
     accepted ag_scene scene/material/coat.c "$line"

@@ -2,7 +2,7 @@
  * Flow: bytes (a picture, statistics) -> [here] -> disk. Threads: any; the slots of pending names are claimed
  * atomically, and may be read by a signal handler at any moment. */
 #define _GNU_SOURCE /* O_PATH, strerror_r that returns its text */
-#include "output/atomic_file.h"
+#include "atomic_file.h"
 
 #include "atomics.h"
 #include "descriptor.h"

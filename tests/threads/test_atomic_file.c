@@ -1,8 +1,8 @@
 /* test_atomic_file.c: files that appear whole or not at all, and targets that are no regular files.
- * Flow: tests of renderer/output/atomic_file.c. Threads: one. */
+ * Flow: tests of threads/atomic_file.c. Threads: one. */
 #define _GNU_SOURCE
+#include "atomic_file.h"
 #include "fixtures/temporary_folder.h"
-#include "output/atomic_file.h"
 
 #include <errno.h>
 #include <fcntl.h>
