@@ -6,43 +6,27 @@
 #include "material/pane.h"
 #include "math/sampling.h"
 
-bool bsdf_has(const bsdf *b, bsdf_lobes lobes)
-{
-    for (int i = 0; i < b->lobe_count; i++)
-        if (b->lobes[i].group & lobes)
-            return true;
-    return false;
-}
-
 rgb bsdf_straight_transmittance(const bsdf *b)
 {
-    if (b->is_pane && b->lobes[0].kind == LOBE_SLAB)
+    if (b->is_pane && b->lobes[0] == LOBE_SLAB)
         return b->material.slab.through;
     return b->is_pane ? pane_transmittance(&b->material, vec3_dot(b->out, b->shading.z)) : rgb_gray(0.0f);
 }
 
-bool bsdf_is_sampled_from_light(const bsdf *b, bsdf_lobes lobes)
-{
-    for (int i = 0; i < b->lobe_count; i++)
-        if ((b->lobes[i].group & lobes) && !b->lobes[i].is_delta)
-            return true;
-    return false;
-}
-
 /* Whether the lobe sends light to the other side too. */
-static bool lobe_passes(const bsdf *b, const bsdf_lobe *lobe)
+static bool lobe_passes(const bsdf *b, int k)
 {
-    const bsdf_lobe_type *type = bsdf_lobe_type_of(lobe);
+    const bsdf_lobe_type *type = bsdf_lobe_type_of(b, k);
     return type->passes && (!type->passes_with || type->passes_with(&b->material));
 }
 
 bool bsdf_has_many_ways(const bsdf *b, bsdf_lobes lobes)
 {
-    for (int i = 0; i < b->lobe_count; i++) {
-        const bsdf_lobe *lobe = &b->lobes[i];
-        if (!(lobe->group & lobes) || !(lobe->probability > 0.0f))
+    const unsigned set = bsdf_lobe_set(b, lobes);
+    for (int k = 0; set >> k; k++) {
+        if (!(set >> k & 1) || !(b->probabilities[k] > 0.0f))
             continue;
-        if (!lobe->is_delta || lobe_passes(b, lobe)) /* all others are mirrors, and of the same normal */
+        if (!(b->smooth_lobes >> k & 1) || lobe_passes(b, k)) /* all others are mirrors, and of the same normal */
             return true;
     }
     return false;
@@ -50,16 +34,16 @@ bool bsdf_has_many_ways(const bsdf *b, bsdf_lobes lobes)
 
 float bsdf_smooth_reflection_share(const bsdf *b, bsdf_lobes lobes)
 {
-    const bsdf_lobe *only = NULL;
-    for (int i = 0; i < b->lobe_count; i++) {
-        const bsdf_lobe *lobe = &b->lobes[i];
-        if (!(lobe->group & lobes) || !(lobe->probability > 0.0f))
+    const unsigned set = bsdf_lobe_set(b, lobes);
+    const bsdf_lobe_type *only = NULL;
+    for (int k = 0; set >> k; k++) {
+        if (!(set >> k & 1) || !(b->probabilities[k] > 0.0f))
             continue;
-        if (only || !lobe->is_delta || !lobe_passes(b, lobe))
+        if (only || !(b->smooth_lobes >> k & 1) || !lobe_passes(b, k))
             return -1.0f;
-        only = lobe;
+        only = bsdf_lobe_type_of(b, k);
     }
-    return only ? bsdf_lobe_type_of(only)->reflection_share(b, frame_to_local(&b->shading, b->out)) : -1.0f;
+    return only ? only->reflection_share(b, frame_to_local(&b->shading, b->out)) : -1.0f;
 }
 
 /* Whether facets may send light through the surface: between the horizons of two normals that are apart. */
@@ -71,23 +55,23 @@ static bool facets_cross(const bsdf *b)
 
 bool bsdf_scatters_through(const bsdf *b, bsdf_lobes lobes)
 {
-    for (int i = 0; i < b->lobe_count; i++) {
-        const bsdf_lobe *lobe = &b->lobes[i];
-        if ((lobe->group & lobes) && !lobe->is_delta &&
-            (lobe_passes(b, lobe) || (bsdf_lobe_type_of(lobe)->side == LOBE_BY_FACETS && facets_cross(b))))
+    for (unsigned left = bsdf_lobe_set(b, lobes) & ~(unsigned)b->smooth_lobes; left; left &= left - 1) {
+        const int k = __builtin_ctz(left);
+        if (lobe_passes(b, k) || (bsdf_lobe_type_of(b, k)->side == LOBE_BY_FACETS && facets_cross(b)))
             return true;
     }
     return false;
 }
 
-float bsdf_probability(const bsdf *b, bsdf_lobes lobes)
+static float probability_of(const bsdf *b, unsigned set)
 {
     float sum = 0.0f;
-    for (int i = 0; i < b->lobe_count; i++)
-        if (b->lobes[i].group & lobes)
-            sum += b->lobes[i].probability;
+    for (unsigned left = set; left; left &= left - 1)
+        sum += b->probabilities[__builtin_ctz(left)];
     return sum;
 }
+
+float bsdf_probability(const bsdf *b, bsdf_lobes lobes) { return probability_of(b, bsdf_lobe_set(b, lobes)); }
 
 rgb bsdf_gathered_reflection(const bsdf *b)
 {
@@ -101,7 +85,7 @@ rgb bsdf_gathered_reflection(const bsdf *b)
 rgb bsdf_gathered_transmission(const bsdf *b)
 {
     for (int k = 0; k < b->lobe_count; k++) {
-        const bsdf_lobe_type *type = bsdf_lobe_type_of(&b->lobes[k]);
+        const bsdf_lobe_type *type = bsdf_lobe_type_of(b, k);
         if (type->albedo && type->side == LOBE_TRANSMITS)
             return type->albedo(&b->material);
     }
@@ -111,8 +95,8 @@ rgb bsdf_gathered_transmission(const bsdf *b)
 float bsdf_index(const bsdf *b)
 {
     for (int k = 0; k < b->lobe_count; k++)
-        if (bsdf_lobe_type_of(&b->lobes[k])->index)
-            return bsdf_lobe_type_of(&b->lobes[k])->index(&b->material);
+        if (bsdf_lobe_type_of(b, k)->index)
+            return bsdf_lobe_type_of(b, k)->index(&b->material);
     return 1.0f;
 }
 
@@ -184,52 +168,54 @@ static bool is_on_its_side(const bsdf *b, const bsdf_lobe_type *type, vec3 direc
     return true;
 }
 
-/* The value, and the density of sampling. */
-static rgb evaluate_all(const bsdf *b, bsdf_lobes lobes, bsdf_transport transport, vec3 direction, float *out_pdf)
+/* The value of a set of lobes, and the density of sampling them. */
+static rgb evaluate_set(const bsdf *b, unsigned set, bsdf_transport transport, vec3 direction, float *out_pdf)
 {
     vec3 o = frame_to_local(&b->shading, b->out), i = frame_to_local(&b->shading, direction);
     rgb sum = rgb_gray(0.0f);
     float density = 0.0f;
-    for (int k = 0; k < b->lobe_count; k++) {
-        const bsdf_lobe_type *type = bsdf_lobe_type_of(&b->lobes[k]);
+    for (unsigned left = set & ~(unsigned)b->smooth_lobes; left; left &= left - 1) {
+        const int k = __builtin_ctz(left);
+        const bsdf_lobe_type *type = bsdf_lobe_type_of(b, k);
         rgb value = rgb_gray(0.0f);
         float pdf = 0.0f;
-        if (!(b->lobes[k].group & lobes) || b->lobes[k].is_delta ||
-            (b->is_tilted && !is_on_its_side(b, type, direction, o, i)))
+        if (b->is_tilted && !is_on_its_side(b, type, direction, o, i))
             continue;
         type->evaluate(b, transport, direction, o, i, &value, &pdf);
         if (transport == BSDF_FLUX)
             value = rgb_scale(value, rough_flux_factor(b, type, direction));
         sum = rgb_add(sum, value);
-        density += pdf * b->lobes[k].probability;
+        density += pdf * b->probabilities[k];
     }
-    *out_pdf = density > 0.0f ? density / bsdf_probability(b, lobes) : 0.0f;
+    *out_pdf = density > 0.0f ? density / probability_of(b, set) : 0.0f;
     return sum;
 }
 
 rgb bsdf_evaluate(const bsdf *b, bsdf_lobes lobes, bsdf_transport transport, vec3 direction)
 {
     float pdf;
-    return evaluate_all(b, lobes, transport, direction, &pdf);
+    return evaluate_set(b, bsdf_lobe_set(b, lobes), transport, direction, &pdf);
 }
 
 float bsdf_pdf(const bsdf *b, bsdf_lobes lobes, bsdf_transport transport, vec3 direction)
 {
     float pdf;
-    evaluate_all(b, lobes, transport, direction, &pdf);
+    evaluate_set(b, bsdf_lobe_set(b, lobes), transport, direction, &pdf);
     return pdf;
 }
 
-/* Picks one of the given lobes, and rescales the random number to be uniform again. */
-static const bsdf_lobe *pick_lobe(const bsdf *b, bsdf_lobes lobes, float *in_out_u, float *out_probability)
+/* Returns the number of a lobe of the set, picked, and rescales the random number to be uniform again. total: of their
+ * probabilities. Returns -1 where none of them carries light. */
+static int pick_lobe(const bsdf *b, unsigned set, float total, float *in_out_u, float *out_probability)
 {
-    float total = bsdf_probability(b, lobes), before = 0.0f;
-    const bsdf_lobe *last = NULL;
-    for (int k = 0; k < b->lobe_count; k++) {
-        float p = b->lobes[k].probability / total;
-        if (!(b->lobes[k].group & lobes) || p <= 0.0f)
+    float before = 0.0f;
+    int last = -1;
+    for (unsigned left = set; left; left &= left - 1) {
+        const int k = __builtin_ctz(left);
+        float p = b->probabilities[k] / total;
+        if (p <= 0.0f)
             continue;
-        last = &b->lobes[k];
+        last = k;
         *out_probability = p;
         if (*in_out_u < before + p) {
             *in_out_u = float_below_one((*in_out_u - before) / p);
@@ -266,18 +252,20 @@ bool bsdf_sample_direction(const bsdf *b, bsdf_lobes lobes, bsdf_transport trans
     float probability;
     if (bsdf_is_plain(b))
         return (lobes & BSDF_GATHERED) && sample_plain(b, transport, u, out_sample);
-    if (!(bsdf_probability(b, lobes) > 0.0f))
+    const unsigned set = bsdf_lobe_set(b, lobes);
+    const float total = probability_of(b, set);
+    if (!(total > 0.0f))
         return false;
-    const bsdf_lobe *lobe = pick_lobe(b, lobes, &u_lobe, &probability);
-    if (!lobe)
+    const int lobe = pick_lobe(b, set, total, &u_lobe, &probability);
+    if (lobe < 0)
         return false;
-    const bsdf_lobe_type *type = bsdf_lobe_type_of(lobe);
+    const bsdf_lobe_type *type = bsdf_lobe_type_of(b, lobe);
     vec3 o = frame_to_local(&b->shading, b->out), i;
     bsdf_sample *out = out_sample;
-    out->group = (bsdf_lobes)lobe->group;
-    out->is_delta = lobe->is_delta;
+    out->group = b->gathered_lobes >> lobe & 1 ? BSDF_GATHERED : BSDF_TRACED;
+    out->is_delta = b->smooth_lobes >> lobe & 1;
     out->is_straight = false;
-    if (lobe->is_delta) {
+    if (out->is_delta) {
         if (!type->sample_smooth(b, transport, o, u_lobe, &i, &out->weight))
             return false;
         out->direction = vec3_normalize(frame_to_world(&b->shading, i));
@@ -297,7 +285,7 @@ bool bsdf_sample_direction(const bsdf *b, bsdf_lobes lobes, bsdf_transport trans
     out->direction = vec3_normalize(frame_to_world(&around, i));
     if (!is_by_geometry && !is_on_its_side(b, type, out->direction, o, i))
         return false;
-    rgb value = evaluate_all(b, lobes, transport, out->direction, &out->pdf_solid_angle);
+    rgb value = evaluate_set(b, set, transport, out->direction, &out->pdf_solid_angle);
     if (!(out->pdf_solid_angle > 0.0f))
         return false;
     out->weight = rgb_scale(value, 1.0f / out->pdf_solid_angle);

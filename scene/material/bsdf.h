@@ -35,14 +35,8 @@ typedef enum bsdf_lobes { BSDF_GATHERED = 1, BSDF_TRACED = 2, BSDF_ALL = 3 } bsd
  * medium, flux is not. */
 typedef enum bsdf_transport { BSDF_RADIANCE, BSDF_FLUX } bsdf_transport;
 
-typedef struct bsdf_lobe {
-    uint8_t kind;  /* bsdf_lobe_kind */
-    uint8_t group; /* bsdf_lobes */
-    bool is_delta;
-    float probability; /* of being picked; those of all lobes sum to 1 */
-} bsdf_lobe;
-
-enum { BSDF_LOBES_MAX = 4 };
+/* The most lobes that a kind of material may add; MATERIAL_KIND_LIST says how many each adds. */
+enum { BSDF_LOBES_MAX = 6 };
 
 typedef struct bsdf {
     material_point material; /* the values that all lobes are evaluated from */
@@ -53,10 +47,12 @@ typedef struct bsdf {
                        look like light from outside in a room of walls without thickness */
     bool is_pane;   /* transmits light straight (pane.h, slab.h), and is not emissive */
     uint8_t lobe_count;
-    bsdf_lobe lobes[BSDF_LOBES_MAX]; /* a diffuse one that reflects comes first */
+    uint8_t gathered_lobes, traced_lobes, smooth_lobes; /* sets: bit k stands for lobes[k] */
+    uint8_t lobes[BSDF_LOBES_MAX];                      /* bsdf_lobe_kind; a diffuse one that reflects comes first */
+    float probabilities[BSDF_LOBES_MAX];                /* of picking each lobe; together 1 */
 } bsdf;
 
-_Static_assert(sizeof(bsdf_lobe) == 8, "each bsdf has BSDF_LOBES_MAX of them");
+_Static_assert(LOBE_KIND_COUNT <= UINT8_MAX && BSDF_LOBES_MAX <= 8, "kinds and sets of lobes are bytes");
 _Static_assert(sizeof(bsdf) <= 192, "three lines of the cache: each hit that is shaded makes a bsdf");
 
 typedef struct bsdf_sample {
@@ -78,14 +74,17 @@ void bsdf_init_of(const material_point *m, const surface_hit *hit, vec3 out, bsd
  * scatters is in the weight of the ray that has met the point. */
 void bsdf_init_in_medium(const medium *m, vec3 out, bsdf *out_bsdf);
 
-bool bsdf_has(const bsdf *b, bsdf_lobes lobes);
+/* Returns the set of these lobes: bit k stands for lobes[k]. */
+static inline unsigned bsdf_lobe_set(const bsdf *b, bsdf_lobes lobes)
+{
+    return (lobes & BSDF_GATHERED ? b->gathered_lobes : 0u) | (lobes & BSDF_TRACED ? b->traced_lobes : 0u);
+}
+
+static inline bool bsdf_has(const bsdf *b, bsdf_lobes lobes) { return bsdf_lobe_set(b, lobes) != 0; }
 
 /* Returns whether the bsdf is one Lambertian lobe: sampling it needs no u_lobe, so that a gather samples its directions
  * in batches, and may follow a guide. */
-static inline bool bsdf_is_plain(const bsdf *b)
-{
-    return b->material.kind == MATERIAL_DIFFUSE && b->lobes[0].group == BSDF_GATHERED;
-}
+static inline bool bsdf_is_plain(const bsdf *b) { return b->material.kind == MATERIAL_DIFFUSE && b->gathered_lobes; }
 
 /* Returns whether `out` is on the inside, by the geometric normal; reflected light stays there. */
 static inline bool bsdf_is_below(const bsdf *b) { return vec3_dot(b->out, b->geometric_normal) < 0.0f; }
@@ -94,7 +93,10 @@ static inline bool bsdf_is_below(const bsdf *b) { return vec3_dot(b->out, b->geo
 rgb bsdf_straight_transmittance(const bsdf *b);
 
 /* Returns whether sampling a lamp can contribute to these lobes: they are not all perfectly smooth. */
-bool bsdf_is_sampled_from_light(const bsdf *b, bsdf_lobes lobes);
+static inline bool bsdf_is_sampled_from_light(const bsdf *b, bsdf_lobes lobes)
+{
+    return (bsdf_lobe_set(b, lobes) & ~(unsigned)b->smooth_lobes) != 0;
+}
 
 /* Returns whether samples of these lobes may have different directions, unlike those of one mirror. */
 bool bsdf_has_many_ways(const bsdf *b, bsdf_lobes lobes);

@@ -8,6 +8,8 @@
 #include "material/slab.h"
 #include "scene.h"
 
+#include <assert.h>
+
 /* No lobe that carries light is picked more rarely than this. */
 static const float PROBABILITY_MIN = 0.1f;
 
@@ -20,9 +22,9 @@ static void normalize_many(bsdf *b)
 {
     float sum = 0.0f, free_sum = 0.0f, left = 1.0f;
     for (int k = 0; k < b->lobe_count; k++)
-        sum += b->lobes[k].probability;
+        sum += b->probabilities[k];
     for (int k = 0; k < b->lobe_count; k++) {
-        float *p = &b->lobes[k].probability;
+        float *p = &b->probabilities[k];
         *p = sum > 0.0f ? *p / sum : 1.0f / (float)b->lobe_count;
         if (*p > 0.0f && *p <= PROBABILITY_MIN) {
             *p = PROBABILITY_MIN;
@@ -32,8 +34,8 @@ static void normalize_many(bsdf *b)
         }
     }
     for (int k = 0; k < b->lobe_count; k++)
-        if (b->lobes[k].probability > PROBABILITY_MIN)
-            b->lobes[k].probability *= left / free_sum;
+        if (b->probabilities[k] > PROBABILITY_MIN)
+            b->probabilities[k] *= left / free_sum;
 }
 
 /* Shares become probabilities; a lobe that carries anything is not neglected. */
@@ -44,15 +46,15 @@ static void normalize_probabilities(bsdf *b)
         return;
     }
     if (b->lobe_count < 2) {
-        b->lobes[0].probability = 1.0f;
+        b->probabilities[0] = 1.0f;
         return;
     }
-    float a = b->lobes[0].probability, sum = a + b->lobes[1].probability;
+    float a = b->probabilities[0], sum = a + b->probabilities[1];
     float p = sum > 0.0f ? a / sum : 0.5f;
     if (p > 0.0f && p < 1.0f)
         p = fminf(fmaxf(p, PROBABILITY_MIN), 1.0f - PROBABILITY_MIN);
-    b->lobes[0].probability = p;
-    b->lobes[1].probability = 1.0f - p;
+    b->probabilities[0] = p;
+    b->probabilities[1] = 1.0f - p;
 }
 
 /* --- a bsdf --- */
@@ -65,13 +67,16 @@ static void set_up(bsdf *b, frame shading, bool is_tilted, const surface_hit *hi
     b->out = out;
     b->is_pane = pane_is_of(&b->material);
     b->is_tilted = is_tilted;
-    b->lobe_count = 0;
+    bsdf_remove_lobes(b);
     const material_type *type = material_type_of(b->material.kind);
     if (type->add_lobes)
         type->add_lobes(b, hit);
+    assert(b->lobe_count <= material_lobes_max[b->material.kind]);
     normalize_probabilities(b);
-    for (int k = 0; hit->is_strand && k < b->lobe_count; k++)
-        b->lobes[k].group = BSDF_TRACED;
+    if (hit->is_strand) {
+        b->traced_lobes |= b->gathered_lobes;
+        b->gathered_lobes = 0;
+    }
 }
 
 void bsdf_init_of(const material_point *m, const surface_hit *hit, vec3 out, bsdf *out_bsdf)
@@ -87,7 +92,7 @@ void bsdf_init_in_medium(const medium *m, vec3 out, bsdf *b)
     b->shading = frame_from_z(out);
     b->geometric_normal = b->out = out;
     b->is_tilted = b->is_pane = false;
-    b->lobe_count = 0;
+    bsdf_remove_lobes(b);
     bsdf_add_lobe(b, LOBE_PHASE, BSDF_TRACED, false, 1.0f);
 }
 
@@ -96,7 +101,7 @@ static void make_slab(const scene *s, const surface_hit *hit, bsdf *b)
 {
     const medium *between = hit->slab.medium < s->medium_count ? &s->media[hit->slab.medium] : NULL;
     b->is_pane = true;
-    b->lobe_count = 0;
+    bsdf_remove_lobes(b);
     bsdf_add_lobe(b, LOBE_SLAB, BSDF_TRACED, true, 1.0f);
     b->material.slab = slab_point_at(&b->material, fabsf(vec3_dot(b->out, b->geometric_normal)), hit, between);
 }

@@ -57,7 +57,10 @@ BSDF_LOBE_LIST(BSDF_LOBE_DECLARATION)
 
 extern const bsdf_lobe_type *const bsdf_lobe_types[LOBE_KIND_COUNT];
 
-static inline const bsdf_lobe_type *bsdf_lobe_type_of(const bsdf_lobe *lobe) { return bsdf_lobe_types[lobe->kind]; }
+static inline const bsdf_lobe_type *bsdf_lobe_type_of(const bsdf *b, int lobe)
+{
+    return bsdf_lobe_types[b->lobes[lobe]];
+}
 
 /* Returns the share of light at a cosine that reaches a diffuse lobe of the type. */
 static inline float bsdf_lobe_transmittance(const bsdf_lobe_type *type, const material_point *m, float cosine)
@@ -68,7 +71,7 @@ static inline float bsdf_lobe_transmittance(const bsdf_lobe_type *type, const ma
 /* Returns the diffuse lobe that reflects, which is then the first; NULL: there is none. */
 static inline const bsdf_lobe_type *bsdf_base_of(const bsdf *b)
 {
-    const bsdf_lobe_type *first = b->lobe_count > 0 ? bsdf_lobe_type_of(&b->lobes[0]) : NULL;
+    const bsdf_lobe_type *first = b->lobe_count > 0 ? bsdf_lobe_type_of(b, 0) : NULL;
     return first && first->albedo ? first : NULL;
 }
 

@@ -13,24 +13,24 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/* --- kinds of material, each with its material_type (material_type.h) --- */
+/* --- kinds of material, each with its material_type (material_type.h) and the most lobes that it adds --- */
 
 #define MATERIAL_KIND_LIST(X)                                                                                          \
-    X(MATERIAL_DIFFUSE, diffuse_material)                                                                              \
-    X(MATERIAL_DIFFUSE_TRANSMISSION, diffuse_transmission_material)                                                    \
-    X(MATERIAL_CONDUCTOR, conductor_material)                                                                          \
-    X(MATERIAL_DIELECTRIC, dielectric_material)                                                                        \
-    X(MATERIAL_THIN_DIELECTRIC, thin_dielectric_material)                                                              \
-    X(MATERIAL_INTERFACE,                                                                                              \
-      no_material) /* no surface: light passes straight (transmittance.h), perhaps into a medium */                    \
-    X(MATERIAL_COATED_DIFFUSE, coated_diffuse_material)     /* a dielectric coat on a diffuse base */                  \
-    X(MATERIAL_COATED_CONDUCTOR, coated_conductor_material) /* a dielectric coat on a conductor */                     \
-    X(MATERIAL_HAIR, hair_material)                         /* a fibre, coloured within (hair.h); mostly on curves */  \
-    X(MATERIAL_PRINCIPLED, principled_material)             /* glTF 2.0's, with its extensions (principled.h) */       \
-    X(MATERIAL_MIX, no_material)                            /* one of two others, picked by position */
+    X(MATERIAL_DIFFUSE, diffuse_material, 1)                                                                           \
+    X(MATERIAL_DIFFUSE_TRANSMISSION, diffuse_transmission_material, 2)                                                 \
+    X(MATERIAL_CONDUCTOR, conductor_material, 1)                                                                       \
+    X(MATERIAL_DIELECTRIC, dielectric_material, 1)                                                                     \
+    X(MATERIAL_THIN_DIELECTRIC, thin_dielectric_material, 1)                                                           \
+    X(MATERIAL_INTERFACE, no_material,                                                                                 \
+      0) /* no surface: light passes straight (transmittance.h), perhaps into a medium */                              \
+    X(MATERIAL_COATED_DIFFUSE, coated_diffuse_material, 3)     /* a dielectric coat on a diffuse base */               \
+    X(MATERIAL_COATED_CONDUCTOR, coated_conductor_material, 3) /* a dielectric coat on a conductor */                  \
+    X(MATERIAL_HAIR, hair_material, 1)             /* a fibre, coloured within (hair.h); mostly on curves */           \
+    X(MATERIAL_PRINCIPLED, principled_material, 4) /* glTF 2.0's, with its extensions (principled.h) */                \
+    X(MATERIAL_MIX, no_material, 0)                /* one of two others, picked by position */
 
 typedef enum material_kind {
-#define MATERIAL_KIND_ENUM(kind, type) kind,
+#define MATERIAL_KIND_ENUM(kind, type, lobes) kind,
     MATERIAL_KIND_LIST(MATERIAL_KIND_ENUM)
 #undef MATERIAL_KIND_ENUM
         MATERIAL_KIND_COUNT

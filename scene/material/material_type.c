@@ -9,9 +9,15 @@ static const float ETA_MIN = 1e-3f;
 const material_type no_material = {.base = LOBE_DIFFUSE};
 
 const material_type *const material_types[MATERIAL_KIND_COUNT] = {
-#define MATERIAL_TYPE_ROW(kind, type) [kind] = &(type),
+#define MATERIAL_TYPE_ROW(kind, type, lobes) [kind] = &(type),
     MATERIAL_KIND_LIST(MATERIAL_TYPE_ROW)
 #undef MATERIAL_TYPE_ROW
+};
+
+const uint8_t material_lobes_max[MATERIAL_KIND_COUNT] = {
+#define MATERIAL_LOBES_ROW(kind, type, lobes) [kind] = (lobes),
+    MATERIAL_KIND_LIST(MATERIAL_LOBES_ROW)
+#undef MATERIAL_LOBES_ROW
 };
 
 bool material_always(const scene *s, const material *m)

@@ -9,6 +9,8 @@
 #include "material/bsdf.h"
 #include "material/material_table.h"
 
+#include <assert.h>
+
 /* The point at which textures are evaluated. footprint: NULL where they are not filtered. */
 typedef struct material_lookup {
     const scene *s;
@@ -66,11 +68,19 @@ typedef struct material_type {
 
 /* Each is defined in the file of its family, except no_material: rays pass an interface, and mixes are resolved
  * before. */
-#define MATERIAL_TYPE_DECLARATION(kind, type) extern const material_type type;
+#define MATERIAL_TYPE_DECLARATION(kind, type, lobes) extern const material_type type;
 MATERIAL_KIND_LIST(MATERIAL_TYPE_DECLARATION)
 #undef MATERIAL_TYPE_DECLARATION
 
 extern const material_type *const material_types[MATERIAL_KIND_COUNT];
+
+/* The most lobes that add_lobes of a kind adds, by its row. */
+extern const uint8_t material_lobes_max[MATERIAL_KIND_COUNT];
+
+#define MATERIAL_LOBES_FIT(kind, type, lobes)                                                                          \
+    _Static_assert((lobes) <= BSDF_LOBES_MAX, "a bsdf has no room for the lobes of " #kind);
+MATERIAL_KIND_LIST(MATERIAL_LOBES_FIT)
+#undef MATERIAL_LOBES_FIT
 
 static inline const material_type *material_type_of(material_kind kind) { return material_types[kind]; }
 
@@ -90,10 +100,21 @@ void material_look_up_facets(const material_lookup *at, const material *m, uint3
 void material_look_up_metal(const material_lookup *at, const material *m, float from_air, rgb *in_out_eta,
                             rgb *in_out_k);
 
-/* Normalises shares to probabilities once all lobes are added. */
+static inline void bsdf_remove_lobes(bsdf *b)
+{
+    b->lobe_count = b->gathered_lobes = b->traced_lobes = b->smooth_lobes = 0;
+}
+
+/* Adds a lobe; bsdf_init.c normalises the shares to probabilities once all are added. */
 static inline void bsdf_add_lobe(bsdf *b, bsdf_lobe_kind kind, bsdf_lobes group, bool is_delta, float share)
 {
-    b->lobes[b->lobe_count++] = (bsdf_lobe){(uint8_t)kind, (uint8_t)group, is_delta, share};
+    const int k = b->lobe_count++;
+    assert(k < BSDF_LOBES_MAX);
+    uint8_t *set = group == BSDF_GATHERED ? &b->gathered_lobes : &b->traced_lobes;
+    *set = (uint8_t)(*set | 1 << k);
+    b->smooth_lobes = (uint8_t)(b->smooth_lobes | is_delta << k);
+    b->lobes[k] = (uint8_t)kind;
+    b->probabilities[k] = share;
 }
 
 #endif

@@ -74,11 +74,9 @@ static double furnace_of(const bsdf *b, bsdf_lobes lobes)
     for (int k = 0; k < b->lobe_count; k++) {
         bsdf_sample s;
         bsdf one = *b;
-        if (!(b->lobes[k].group & lobes) || !b->lobes[k].is_delta)
+        if (!(bsdf_lobe_set(b, lobes) & b->smooth_lobes & 1u << k))
             continue;
-        one.lobe_count = 1;
-        one.lobes[0] = b->lobes[k];
-        one.lobes[0].probability = 1.0f;
+        bsdf_keep_lobe(&one, k);
         assert_true(bsdf_sample_direction(&one, BSDF_ALL, BSDF_RADIANCE, 0.5f, (vec2){0.5f, 0.5f}, &s));
         assert_true(s.is_delta);
         sum += s.weight.g;

@@ -31,15 +31,13 @@ static double furnace_of(const bsdf *b, bsdf_lobes lobes)
     double sum = 0.0;
     for (int k = 0; k < b->lobe_count; k++) {
         bsdf one = *b;
-        if (!(b->lobes[k].group & lobes))
+        if (!(bsdf_lobe_set(b, lobes) >> k & 1))
             continue;
-        if (b->lobes[k].group == BSDF_GATHERED) {
+        if (b->gathered_lobes >> k & 1) {
             sum += gathered_furnace(b);
             continue;
         }
-        one.lobe_count = 1;
-        one.lobes[0] = b->lobes[k];
-        one.lobes[0].probability = 1.0f;
+        bsdf_keep_lobe(&one, k);
         for (int i = 0; i < STEPS * STEPS; i++) {
             bsdf_sample s;
             vec2 u = {((float)(i / STEPS) + 0.5f) / STEPS, ((float)(i % STEPS) + 0.5f) / STEPS};

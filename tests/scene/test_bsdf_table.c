@@ -5,6 +5,7 @@
  * Threads: one. */
 /* ctest: serial */
 #include "fixtures/bsdf_fixture.h"
+#include "material/material_type.h"
 #include "material/principled.h"
 
 enum { SAMPLES = 20000 / FEWER };
@@ -63,6 +64,13 @@ static material thin(float ior)
     return m;
 }
 
+/* A coat whose medium scatters. */
+static material milky(material m)
+{
+    m.coat_thickness = 0.5f, m.coat_albedo = (rgb){0.9f, 0.5f, 0.1f}, m.coat_g = 0.4f;
+    return m;
+}
+
 #define PARTS                                                                                                          \
     "MakeNamedMaterial \"a\" \"string type\" \"diffuse\" \"rgb reflectance\" [.7 .2 .4] MakeNamedMaterial \"b\" "      \
     "\"string type\" \"conductor\" \"float roughness\" .3 \"rgb reflectance\" [.9 .7 .3] "
@@ -95,6 +103,8 @@ static table *table_create(void)
     add(t, "coated brushed metal", coated_conductor(0.0f, 0.3f, 0.5f));
     add(t, "rough coated mirror", coated_conductor(0.3f, 0.0f, 0.0f));
     add(t, "rough coated metal", coated_conductor(0.4f, 0.3f, 0.3f));
+    add(t, "milky coated diffuse", milky(coated_diffuse(0.0f, 0.0f)));
+    add(t, "milky coated metal", milky(coated_conductor(0.3f, 0.3f, 0.3f)));
     for (int k = 0; k < PRINCIPLED_SORTS; k++)
         add(t, "principled", principled_sort(k));
     add_text(t, "interface",
@@ -157,6 +167,25 @@ static void every_kind_has_a_row(void **state)
         assert_true(is_there[kind]);
 }
 
+/* A bsdf has room for as many lobes as the row of a kind says, so no more are added; and some material of each kind
+ * has all of them. */
+static void kinds_add_the_lobes_of_their_rows(void **state)
+{
+    const table *t = *state;
+    int most[MATERIAL_KIND_COUNT] = {0};
+    for (int k = 0; k < t->count; k++)
+        for (double degrees = 5.0; degrees < 180.0; degrees += 5.0) {
+            bsdf b = row_bsdf(&t->rows[k], direction_at(degrees, 40.0));
+            material_kind kind = b.material.kind;
+            if (b.lobe_count > material_lobes_max[kind])
+                fail_msg("%s has %d lobes, and by its row %d", t->rows[k].name, b.lobe_count, material_lobes_max[kind]);
+            most[kind] = b.lobe_count > most[kind] ? b.lobe_count : most[kind];
+        }
+    for (int kind = 0; kind < MATERIAL_KIND_COUNT; kind++)
+        if (most[kind] < material_lobes_max[kind])
+            fail_msg("of kind %d no row has more than %d of the %d lobes", kind, most[kind], material_lobes_max[kind]);
+}
+
 /* Hair does not scatter alike both ways, by its model; test_hair.c says what holds for photons in it. */
 static bool scatters_one_way(const row *r) { return r->point.kind == MATERIAL_HAIR; }
 
@@ -170,7 +199,7 @@ static void check_row(const row *r)
         bsdf b = row_bsdf(r, direction_at(ANGLES[i], 25.0 + 130.0 * i));
         double probability = 0.0;
         for (int k = 0; k < b.lobe_count; k++)
-            probability += (double)b.lobes[k].probability;
+            probability += (double)b.probabilities[k];
         bool is_empty = r->point.kind == MATERIAL_INTERFACE;
         assert_close(probability, is_empty ? 0.0 : 1.0, 1e-6);
         assert_close(bsdf_probability(&b, BSDF_ALL), probability, 1e-6);
@@ -328,6 +357,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_kind_has_a_row),
+        cmocka_unit_test(kinds_add_the_lobes_of_their_rows),
         cmocka_unit_test(samples_fall_and_weigh_as_is_said),
         cmocka_unit_test(radiance_gains_no_more_than_flux),
         cmocka_unit_test(scattering_is_reciprocal),

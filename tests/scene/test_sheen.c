@@ -167,7 +167,7 @@ static void white_cloth_is_white(void **state)
                 m = with_sheen(m, MODELS[k], rgb_gray(sheen_factor_max(MODELS[k])), (float)roughness);
                 const bsdf b = flat(&m, direction_at(degrees, 20.0));
                 double all, sheen;
-                assert_true(b.lobe_count == 2 && b.lobes[0].group == BSDF_GATHERED);
+                assert_true(b.lobe_count == 2 && b.gathered_lobes == 1);
                 furnace(&b, &all, &sheen);
                 const double expected =
                     (double)sheen_factor_max(MODELS[k]) * integrate(MODELS[k], roughness, cos(degrees * PI / 180.0));
