@@ -149,6 +149,66 @@ static void empty_channels_are_not_picked(void **state)
     }
 }
 
+/* --- every kind --- */
+
+/* Makes a medium of a kind that absorbs and scatters. Returns false where it does not know the kind. */
+static bool make_murky(medium_kind kind, medium *out)
+{
+    *out = medium_make(kind);
+    switch (kind) {
+    case MEDIUM_HOMOGENEOUS: out->as.homogeneous = FOG.as.homogeneous; return true;
+    case MEDIUM_KIND_COUNT: break;
+    }
+    return false;
+}
+
+/* On any line as many flights reach the end as the transmittance says, in the mean; the others end on the way. */
+static void expect_flights_to_agree(const medium *m)
+{
+    enum { LINES = 100000 / FEWER };
+    double through[3] = {0}, difference[3] = {0}, squares[3] = {0};
+    rng random = test_random(5);
+    for (int i = 0; i < LINES; i++) {
+        vec3 direction = random_direction(&random);
+        medium_stretch way = {{rng_float(&random), rng_float(&random), rng_float(&random)}, direction, 0.8f};
+        medium_flight f = medium_flight_begin(rgb_gray(1.0f), rng_vec2(&random));
+        float distance = -1.0f;
+        bool is_scattered = medium_flight_pass(&f, m, &way, &distance);
+        assert_true(!is_scattered || (distance >= 0.0f && distance < way.length));
+        rgb left = medium_transmittance(m, &way), again = medium_transmittance(m, &way);
+        rgb weight = is_scattered ? rgb_gray(0.0f) : medium_flight_weight(&f);
+        const double t[3] = {left.r, left.g, left.b}, w[3] = {weight.r, weight.g, weight.b};
+        assert_memory_equal(&left, &again, sizeof left);
+        for (int c = 0; c < 3; c++) {
+            assert_true(t[c] >= 0.0 && t[c] <= 1.0);
+            through[c] += t[c] / LINES, difference[c] += (w[c] - t[c]) / LINES;
+            squares[c] += (w[c] - t[c]) * (w[c] - t[c]) / LINES;
+        }
+    }
+    for (int c = 0; c < 3; c++) {
+        assert_true(through[c] > 0.0 && through[c] < 1.0);
+        assert_true(fabs(difference[c]) <= 4.0 * sqrt(squares[c] / LINES));
+    }
+}
+
+static void every_kind_does_what_a_medium_does(void **state)
+{
+    (void)state;
+    const medium_stretch way = {{0.0f, 0.0f, 0.0f}, {0.0f, 0.0f, 1.0f}, INFINITY};
+    for (int kind = 0; kind < MEDIUM_KIND_COUNT; kind++) {
+        medium m = medium_make((medium_kind)kind);
+        rgb left = medium_transmittance(&m, &way);
+        assert_true(m.kind == (medium_kind)kind && !medium_scatters(&m));
+        assert_true(left.r == 1.0f && left.g == 1.0f && left.b == 1.0f);
+        if (!make_murky((medium_kind)kind, &m))
+            fail_msg("make_murky makes no medium of kind %d", kind);
+        assert_true(medium_scatters(&m));
+        expect_flights_to_agree(&m);
+        medium_reset(&m);
+        assert_true(m.kind == (medium_kind)kind && !medium_scatters(&m));
+    }
+}
+
 static const float GS[] = {-0.999f, -0.9f, -0.5f, -1e-4f, 0.0f, 1e-4f, 0.3f, 0.85f, 0.99f};
 enum { GS_COUNT = sizeof GS / sizeof *GS };
 
@@ -325,6 +385,7 @@ int main(void)
         cmocka_unit_test(flights_end_well),
         cmocka_unit_test(no_colour_grows),
         cmocka_unit_test(empty_channels_are_not_picked),
+        cmocka_unit_test(every_kind_does_what_a_medium_does),
         cmocka_unit_test(phase_function_is_normalized),
         cmocka_unit_test(phase_function_is_sampled_by_its_density),
         cmocka_unit_test(bsdf_in_a_medium_is_the_phase_function),

@@ -275,6 +275,36 @@ static void test_lights(void **state)
     test_run_reset(&r);
 }
 
+/* Tests the numbers of a kind of medium, up to its last one; what it owns follows. */
+#define MEDIUM_WORDS_COUNT(source, last)                                                                               \
+    WORDS_COUNT(medium, m, FIELD(medium, kind),                                                                        \
+                {offsetof(medium, as) + offsetof(source, last) + sizeof(((source *)0)->last), sizeof(medium)})
+
+static void test_media(void **state)
+{
+    (void)state;
+    test_run r;
+    test_run_init(&r, 1);
+    scene *s = create(&r, WORLD, CAMERA);
+    medium *m = &s->media[0], kept = *m;
+    for (int kind = 0; kind < MEDIUM_KIND_COUNT; kind++) {
+        bool is_known = false;
+        *m = medium_make((medium_kind)kind);
+        switch ((medium_kind)kind) {
+        case MEDIUM_HOMOGENEOUS:
+            MEDIUM_WORDS_COUNT(homogeneous_parameters, sigma_s);
+            is_known = true;
+            break;
+        case MEDIUM_KIND_COUNT: break;
+        }
+        if (!is_known)
+            fail_msg("nothing here says which numbers medium %d has", kind);
+    }
+    *m = kept;
+    scene_destroy(s);
+    test_run_reset(&r);
+}
+
 /* Pictures of lights and textures, by pixels and by shape. */
 static void test_pixels(void **state)
 {
@@ -358,6 +388,7 @@ int main(void)
         cmocka_unit_test(test_no_word_is_forgotten),
         cmocka_unit_test(test_an_eye_in_fog_counts),
         cmocka_unit_test(test_lights),
+        cmocka_unit_test(test_media),
         cmocka_unit_test(test_pixels),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
