@@ -358,6 +358,70 @@ static void test_slopes(void **state)
     studio_close(s);
 }
 
+/* A ball of glass and one of rough copper in front of a mirror, on a floor under a lamp and a dim sky: all that layers
+ * show is in the picture, and differs from place to place. */
+#define ALL_SORTS(camera)                                                                                              \
+    "Film \"rgb\" LookAt 0 1.6 4  0 .6 0  0 1 0 Camera " camera " WorldBegin\n"                                        \
+    "LightSource \"infinite\" \"rgb L\" [.1 .2 .3]\n"                                                                  \
+    "AttributeBegin AreaLightSource \"diffuse\" \"rgb L\" [9 8 7] \"string lightgroup\" \"key\" Translate 0 1.8 0\n"   \
+    "Rotate 90 1 0 0 Shape \"disk\" \"float radius\" .7 AttributeEnd\n"                                                \
+    "Material \"diffuse\" \"rgb reflectance\" [.7 .5 .3] Shape \"bilinearmesh\" \"point3 P\" [-1.6 0 -1 1.6 0 -1 "     \
+    "-1.6 0 3 1.6 0 3]\n"                                                                                              \
+    "Material \"conductor\" Shape \"bilinearmesh\" \"point3 P\" [-.8 0 -1 .8 .1 -1 -.8 1.4 -1.2 .8 1.4 -1]\n"          \
+    "AttributeBegin Material \"conductor\" \"float roughness\" .2 Translate .7 .4 .2 Shape \"sphere\" "                \
+    "\"float radius\" .4 AttributeEnd\n"                                                                               \
+    "AttributeBegin Material \"dielectric\" Translate -.6 .5 .4 Shape \"sphere\" \"float radius\" .45 AttributeEnd\n"
+
+static int compare_floats(const void *a, const void *b)
+{
+    const float x = *(const float *)a, y = *(const float *)b;
+    return (x > y) - (x < y);
+}
+
+static int count_different(const ag_film *film, const char *channel)
+{
+    float *values = film_channel_of(film, channel);
+    int count = film_pixel_count(film), different = 1;
+    qsort(values, (size_t)count, sizeof *values, compare_floats);
+    for (int i = 1; i < count; i++)
+        different += values[i] != values[i - 1];
+    free(values);
+    return different;
+}
+
+/* Where nothing fills a value, a channel has one value everywhere, or a second where the ray meets nothing. Of a layer
+ * that has channels for more than this scene has (ranks of Cryptomatte) the first is looked at. */
+static void test_every_layer_is_filled(void **state)
+{
+    (void)state;
+    studio *s = studio_open(ALL_SORTS("\"perspective\" \"float fov\" 50"), 2);
+    const ag_layer_info *info;
+    s->settings.width = s->settings.height = 48; /* more than one tile */
+    s->settings.samples_per_pixel = 32;
+    s->settings.noise_min_samples = 4;
+    s->settings.noise_level = 0.03f; /* numbers of samples differ */
+    for (size_t i = 0; (info = ag_layer_at(i)) != NULL; i++) {
+        s->settings.layers = (uint32_t)info->layer;
+        ag_film *film = studio_render(s);
+        assert_true(ag_film_channel_count(film) > 3);
+        bool has_ranks = info->group && strcmp(info->group, "crypto") == 0;
+        for (int c = 0; c < (has_ranks ? 4 : ag_film_channel_count(film)); c++) {
+            const char *name = ag_film_channel_name(film, c);
+            if (count_different(film, name) < 3)
+                fail_msg("layer %s: nothing fills channel %s", info->name, name);
+        }
+        ag_film_destroy(film);
+    }
+    studio_close(s);
+
+    s = studio_open(ALL_SORTS("\"spherical\""), 2); /* its depth is the distance, which is filled elsewhere */
+    s->settings.layers = AG_LAYER_DEPTH;
+    ag_film *film = studio_render(s);
+    assert_true(count_different(film, "Z") >= 3);
+    ag_film_destroy(film);
+    studio_close(s);
+}
+
 /* Clamping takes light away, each from its own part. */
 static void test_clamps(void **state)
 {
@@ -402,6 +466,7 @@ int main(void)
         TEST_IN_FOLDER(test_light_groups),
         TEST_IN_FOLDER(test_gbuffer),
         TEST_IN_FOLDER(test_slopes),
+        TEST_IN_FOLDER(test_every_layer_is_filled),
         TEST_IN_FOLDER(test_clamps),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
