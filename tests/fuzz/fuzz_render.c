@@ -30,7 +30,9 @@ static void render(ag_context *context, const ag_scene *s, ag_integrator integra
     settings.caustic_photon_count = 20;
     settings.nearest = 8;
     settings.gather_samples = 2;
-    settings.layers |= AG_LAYERS_ALL;
+    uint32_t all;
+    FUZZ_CHECK(ag_layers_parse("all", &all) == AG_OK);
+    settings.layers |= all;
     if (settings.max_depth > 8)
         settings.max_depth = 8;
     ag_film *film;

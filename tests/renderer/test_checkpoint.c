@@ -36,7 +36,7 @@ static void test_resumed_bits(void **state)
             snprintf(text, sizeof text, "PixelFilter \"%s\" Include \"%smirror_wall.pbrt\"", filters[f], LAYERS_SCENES);
             studio *whole = studio_open(text, 2);
             whole->settings.integrator = path ? AG_INTEGRATOR_PATH : AG_INTEGRATOR_PHOTONMAP;
-            whole->settings.layers = AG_LAYERS_ALL | AG_LAYER_GBUFFER;
+            whole->settings.layers = layers_of("all") | AG_LAYER_GBUFFER;
             whole->settings.width = whole->settings.height = 34; /* some tiles */
             whole->settings.photon_count = whole->settings.caustic_photon_count = 2000;
             whole->settings.nearest = 30;

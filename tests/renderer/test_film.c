@@ -26,7 +26,7 @@ static void test_passes(void **state)
             studio *s = studio_open(text, 1), *threaded = studio_open(text, 3);
             s->settings.integrator = path ? AG_INTEGRATOR_PATH : AG_INTEGRATOR_PHOTONMAP;
             s->settings.samples_per_pixel = 7;
-            s->settings.layers = AG_LAYERS_ALL | AG_LAYER_GBUFFER;
+            s->settings.layers = layers_of("all") | AG_LAYER_GBUFFER;
             threaded->settings = s->settings;
             ag_film *whole = studio_render(s), *passes = render_in_passes(threaded, (const int[]){1, 4, 4, 7, 0});
             expect_same_film(whole, passes);
@@ -50,7 +50,7 @@ static void test_layers_leave_the_picture(void **state)
         s->settings.integrator = path ? AG_INTEGRATOR_PATH : AG_INTEGRATOR_PHOTONMAP;
         ag_film *plain = studio_render(s);
         assert_int_equal(ag_film_channel_count(plain), 3);
-        s->settings.layers = AG_LAYERS_ALL & ~(uint32_t)AG_LAYERS_LIGHT;
+        s->settings.layers = layers_of("all") & ~(uint32_t)AG_LAYERS_LIGHT;
         ag_film *layered = studio_render(s);
         int width, height;
         const float *a = ag_film_pixels(plain, &width, &height), *b = ag_film_pixels(layered, &width, &height);
@@ -145,7 +145,7 @@ static void test_sums(void **state)
 {
     (void)state;
     ag_film *film =
-        film_of((AG_LAYERS_ALL & ~(uint32_t)(AG_LAYERS_LIGHT | AG_LAYER_CRYPTO_OBJECT | AG_LAYER_CRYPTO_MATERIAL)) |
+        film_of((layers_of("all") & ~(uint32_t)(AG_LAYERS_LIGHT | AG_LAYER_CRYPTO_OBJECT | AG_LAYER_CRYPTO_MATERIAL)) |
                     AG_LAYER_GBUFFER,
                 false);
     film_resolve(film); /* without any sample */

@@ -52,15 +52,9 @@ typedef enum ag_layer {
     AG_LAYER_CRYPTO_MATERIAL = 1 << 23
 } ag_layer;
 #define AG_LAYERS_LIGHT (AG_LAYER_EMISSION | AG_LAYER_DIRECT | AG_LAYER_INDIRECT | AG_LAYER_CAUSTIC | AG_LAYER_SPECULAR)
-/* All layers that are the same from run to run, under this library's names: without GBUFFER and TILE_TIME. */
-#define AG_LAYERS_ALL                                                                                                  \
-    (AG_LAYER_ALPHA | AG_LAYER_DEPTH | AG_LAYER_ALBEDO | AG_LAYER_NORMAL | AG_LAYER_POSITION | AG_LAYER_UV |           \
-     AG_LAYERS_LIGHT | AG_LAYER_IRRADIANCE | AG_LAYER_VARIANCE | AG_LAYER_SAMPLES | AG_LAYER_ID |                      \
-     AG_LAYER_LIGHT_GROUPS | AG_LAYER_PHOTON_DENSITY | AG_LAYER_CACHE_STATE | AG_LAYER_PHOTON_DISTANCE |               \
-     AG_LAYER_GATHER_DISTANCE | AG_LAYER_CRYPTO_OBJECT | AG_LAYER_CRYPTO_MATERIAL)
 
-/* Reads names of layers, separated by commas: "A,Z,albedo", "light" for the parts of light, "all". Errors:
- * AG_ERROR_ARGUMENT (a name is unknown). */
+/* Reads names of layers, separated by commas: "A,Z,albedo", "light" for the parts of light, "all" for those that are
+ * the same from run to run and have this library's names. Errors: AG_ERROR_ARGUMENT (a name is unknown). */
 AG_API ag_status ag_layers_parse(const char *list, uint32_t *out_layers);
 
 /* A layer by its name, for command lines and their help. The strings are the library's. */
