@@ -140,7 +140,7 @@ ag_status scene_prepare(ag_context *context, const char *name, const scene_reque
 ag_status scene_complete(ag_context *context, scene *s)
 {
     const phase_begin begin = context_begin_phase();
-    s->definitions = NULL; /* all three were borrowed */
+    s->definitions = NULL; /* both were borrowed */
     scene_set_request(s, NULL);
     AG_TRY(scene_commit(s, &context->run, context->isa));
     context_end_phase(context, AG_PHASE_BVH, begin);

@@ -52,7 +52,7 @@ typedef enum channel_source {
     CHANNEL_CRYPTO_COVERAGE /* component: likewise */
 } channel_source;
 
-/* A view of the photon map, one value for a pixel as a whole: see debug_views.h. */
+/* A value of a pixel as a whole: views of the photon map (debug_views.h), and how long its tile took. */
 typedef enum film_view {
     VIEW_PHOTON_DENSITY,
     VIEW_CACHE_STATE,

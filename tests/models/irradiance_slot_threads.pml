@@ -7,7 +7,10 @@
  * claim. A process that dies takes all of its threads with it. PATIENCE: a thread waits for a claim of its own process
  * for so many rounds, then gives the process a new number, with which the old claim counts as a dead one's. The holder
  * may still be at work, since any thread may stand still between two steps. LOST: the slot holds a claim of process 0
- * that nobody is at work on, as after the file was overwritten by a copy of itself. */
+ * that nobody is at work on, as after the file was overwritten by a copy of itself.
+ *
+ * There is one slot here. In the program a thread may give its process a new number because of another slot, just before
+ * a claim is made with the old one: that claim counts as a dead one's, and its estimate may be made twice. */
 
 #ifndef WORKERS
 #define WORKERS   4 /* threads of all processes */

@@ -11,8 +11,9 @@ fi
 
 # Names what is wrong with the messages of the commits beyond a base. Returns 1 where anything is.
 check() { # REPOSITORY BASE
-    local status=0 commit message subject
-    for commit in $(git -C "$1" rev-list --no-merges "$2..HEAD"); do
+    local status=0 commits commit message subject
+    commits=$(git -C "$1" rev-list --no-merges "$2..HEAD") || return 1
+    for commit in $commits; do
         message=$(git -C "$1" log -1 --format=%B "$commit")
         subject=${message%%$'\n'*}
         if ((${#subject} > 72)); then
