@@ -1,6 +1,6 @@
 /* irradiance_estimate.h: the irradiance at a point from the density of the photons around it.
  * Rests on: Jensen, "Realistic Image Synthesis Using Photon Mapping", 2001, ch. 7 (density estimates).
- * Flow: photon_k_nearest, disc_kernels, surface_region -> [here] -> irradiance_cache, caustic_radius, the renderer's transport.
+ * Flow: photon_k_nearest, disc_kernels, surface_region -> [here] -> irradiance_cache, caustic_radius, transport.
  * Threads: pure functions, but for the caller's scratch memory. */
 #ifndef AFTERGLOW_IRRADIANCE_ESTIMATE_H
 #define AFTERGLOW_IRRADIANCE_ESTIMATE_H
