@@ -41,7 +41,7 @@ static frame frame_around(vec3 normal, uint32_t face)
     return (frame){x, vec3_cross(normal, x), normal};
 }
 
-/* What follows from a photon's normal, kept for the next photon, which often has the same one. */
+/* The results that depend on a photon's normal alone, kept for the next photon, which often has the same one. */
 typedef struct kept_normal {
     uint32_t code; /* of the normal; NORMAL_NONE: there was none */
     uint32_t face;

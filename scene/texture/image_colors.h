@@ -12,7 +12,7 @@
 struct image;
 struct color_config;
 
-/* What colours of pictures are converted to. Both are borrowed. */
+/* The space that colours of pictures are converted to. Both members are borrowed. */
 typedef struct image_colors_target {
     const working_space *space;
     const struct color_config *config; /* that names it, and tells how pictures are encoded; NULL: none */

@@ -382,6 +382,8 @@ static int count_different(const ag_film *film, const char *channel)
 {
     float *values = film_channel_of(film, channel);
     int count = film_pixel_count(film), different = 1;
+    for (int i = 0; i < count; i++)
+        assert_true(isfinite(values[i]));
     qsort(values, (size_t)count, sizeof *values, compare_floats);
     for (int i = 1; i < count; i++)
         different += values[i] != values[i - 1];

@@ -87,13 +87,13 @@ static void tables_pass_on_to_the_next_scene(void **state)
     const void *tables[2];
     for (int i = 0; i < 2; i++)
         tables[i] = add(first, &items[i])->table;
-    second->before = first;
+    scene_set_before(second, first);
     const material other = coated(0.4f);
     for (int i = 1; i >= 0; i--)
         assert_ptr_equal(add(second, &items[i])->table, tables[i]);
     assert_non_null(add(second, &other)->table);
     assert_int_equal(second->material_table_count, 3);
-    second->before = NULL;
+    scene_set_before(second, NULL);
     scene_destroy(first);
     assert_float_equal(((const hair_fibre *)tables[0])->ior, 1.55, 1e-6); /* read after free where it was not held */
     scene_destroy(second);
