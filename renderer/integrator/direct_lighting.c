@@ -1,6 +1,7 @@
 /* direct_lighting.c: see direct_lighting.h. */
 #include "integrator/direct_lighting.h"
 
+#include "light/light_tree.h"
 #include "math/sampling.h"
 #include "rays/transmittance.h"
 
@@ -31,7 +32,7 @@ static uint32_t pick_lamp(const transport *t, vec3 from, vec3 normal, float u_pi
 
 /* Returns the lamp's probability, times the density of the guide's warp in that direction, which infinite lights alone
  * have. */
-static float lamp_factor(const transport *t, vec3 from, vec3 normal, uint32_t lamp, vec3 direction)
+static float picked_factor(const transport *t, vec3 from, vec3 normal, uint32_t lamp, vec3 direction)
 {
     const direct_guide *guide = t->direct_guide;
     uint32_t cell = direct_guide_find(guide, from, normal);
@@ -41,29 +42,79 @@ static float lamp_factor(const transport *t, vec3 from, vec3 normal, uint32_t la
            direct_guide_density(guide, t->s, cell, lamp, direction);
 }
 
+/* Returns the radiance that the vertex reflects of a sample of a lamp, over the sample's density, which is that of the
+ * lamp's own sampling times `factor`. */
+static rgb reflected_light(const transport *t, eye_worker *worker, const vertex *v, bsdf_lobes lobes,
+                           const light_sample *sample, float factor, int lamp_count, float scatter_count)
+{
+    rgb reflected = rgb_mul(bsdf_evaluate(&v->scattering, lobes, BSDF_RADIANCE, sample->direction), sample->radiance);
+    if (rgb_is_black(reflected))
+        return reflected;
+    rgb transmittance = direct_light_transmittance(t, worker, vertex_ray(v, sample->direction), sample);
+    if (rgb_is_black(transmittance))
+        return transmittance;
+    float pdf = sample->pdf_solid_angle * factor, weight = 1.0f;
+    if (!sample->is_delta && scatter_count > 0.0f)
+        weight = mis_power((float)lamp_count, pdf, scatter_count,
+                           bsdf_pdf(&v->scattering, lobes, BSDF_RADIANCE, sample->direction));
+    return rgb_scale(rgb_mul(reflected, transmittance), weight / pdf);
+}
+
 lamp_light direct_light_sample_lamp(const transport *t, eye_worker *worker, const vertex *v, bsdf_lobes lobes,
                                     float u_pick, vec2 u, int lamp_count, float scatter_count)
 {
     const lamp_light none = {.radiance = rgb_gray(0.0f)};
     if (!t->has_lights)
         return none;
-    float probability;
+    float factor;
     light_sample sample;
-    uint32_t lamp = pick_lamp(t, vertex_position(v), vertex_light_normal(v, lobes), u_pick, &u, &probability);
-    if (!(probability > 0.0f) || !light_sample_from_point(t->s, &t->s->lights[lamp], vertex_position(v), u, &sample))
+    uint32_t lamp = pick_lamp(t, vertex_position(v), vertex_light_normal(v, lobes), u_pick, &u, &factor);
+    if (!(factor > 0.0f) || !light_sample_from_point(t->s, &t->s->lights[lamp], vertex_position(v), u, &sample))
         return none;
-    rgb reflected = rgb_mul(bsdf_evaluate(&v->scattering, lobes, BSDF_RADIANCE, sample.direction), sample.radiance);
-    if (rgb_is_black(reflected))
-        return none;
+    return (lamp_light){reflected_light(t, worker, v, lobes, &sample, factor, lamp_count, scatter_count), lamp,
+                        sample.direction};
+}
 
-    rgb transmittance = direct_light_transmittance(t, worker, vertex_ray(v, sample.direction), &sample);
-    if (rgb_is_black(transmittance))
-        return none;
-    float pdf = sample.pdf_solid_angle * probability, weight = 1.0f;
-    if (!sample.is_delta && scatter_count > 0.0f)
-        weight = mis_power((float)lamp_count, pdf, scatter_count,
-                           bsdf_pdf(&v->scattering, lobes, BSDF_RADIANCE, sample.direction));
-    return (lamp_light){rgb_scale(rgb_mul(reflected, transmittance), weight / pdf), lamp, sample.direction};
+/* The share of direct_light_sample_each's samples whose direction a cell of the direct guide decides. */
+static const float EACH_GUIDED_SHARE = 0.5f;
+
+/* Returns the factor of the density of direct_light_sample_each, for a light that reaches everywhere. */
+static float each_factor(const transport *t, uint32_t cell, uint32_t lamp, vec3 direction)
+{
+    if (cell == DIRECT_GUIDE_NO_CELL)
+        return 1.0f;
+    return 1.0f - EACH_GUIDED_SHARE +
+           EACH_GUIDED_SHARE * direct_guide_density(t->direct_guide, t->s, cell, lamp, direction);
+}
+
+rgb direct_light_sample_each(const transport *t, eye_worker *worker, const vertex *v, bsdf_lobes lobes, rng *random,
+                             float scatter_count)
+{
+    rgb sum = rgb_gray(0.0f);
+    if (!t->has_lights)
+        return sum;
+    const scene *s = t->s;
+    vec3 from = vertex_position(v), normal = vertex_light_normal(v, lobes);
+    uint32_t cell = direct_guide_find(t->direct_guide, from, normal);
+    light_sample sample;
+    for (uint32_t i = 0; i < s->everywhere_count; i++) {
+        uint32_t lamp = s->everywhere_lights[i];
+        bool is_guided = rng_float(random) < EACH_GUIDED_SHARE && cell != DIRECT_GUIDE_NO_CELL;
+        vec2 u = rng_vec2(random);
+        if (is_guided)
+            direct_guide_warp(t->direct_guide, s, cell, lamp, &u);
+        if (light_sample_from_point(s, &s->lights[lamp], from, u, &sample))
+            sum = rgb_add(sum, reflected_light(t, worker, v, lobes, &sample,
+                                               each_factor(t, cell, lamp, sample.direction), 1, scatter_count));
+    }
+    if (!s->light_tree)
+        return sum;
+    float probability, u_pick = rng_float(random);
+    vec2 u = rng_vec2(random);
+    uint32_t lamp = light_tree_pick(s->light_tree, from, normal, u_pick, &probability);
+    if (probability > 0.0f && light_sample_from_point(s, &s->lights[lamp], from, u, &sample))
+        sum = rgb_add(sum, reflected_light(t, worker, v, lobes, &sample, probability, 1, scatter_count));
+    return sum;
 }
 
 /* Adds light to the group of its lamp, where groups are asked for. */
@@ -73,17 +124,32 @@ static void add_to_group(rgb *by_group, const light *lamp, rgb light_brought)
         by_group[lamp->group] = rgb_add(by_group[lamp->group], light_brought);
 }
 
+/* Returns the weight of a sample by scattering in a direction that a lamp's own sampling has with density own_pdf. */
+static float scatter_weight(const transport *t, vec3 from, vec3 normal, uint32_t lamp, vec3 direction, float own_pdf,
+                            float pdf_solid_angle, light_counts counts)
+{
+    if (counts.lamp != LIGHT_COUNT_EACH)
+        return mis_power(counts.scattering, pdf_solid_angle, (float)counts.lamp,
+                         picked_factor(t, from, normal, lamp, direction) * own_pdf);
+    const light *l = &t->s->lights[lamp];
+    float factor = 0.0f;
+    if (light_is_everywhere(l))
+        factor = each_factor(t, direct_guide_find(t->direct_guide, from, normal), lamp, direction);
+    else if (rgb_mean(l->power) > 0.0f)
+        factor = light_tree_probability(t->s->light_tree, lamp, from, normal);
+    return mis_power(counts.scattering, pdf_solid_angle, 1.0f, factor * own_pdf);
+}
+
 float direct_light_scatter_weight(const transport *t, vec3 from, vec3 normal, const vertex *on_lamp,
-                                  float pdf_solid_angle, int lamp_count, float scatter_count)
+                                  float pdf_solid_angle, light_counts counts)
 {
     uint32_t lamp = (uint32_t)(on_lamp->lamp - t->s->lights);
-    float pdf = lamp_factor(t, from, normal, lamp, on_lamp->arrived.direction) *
-                light_pdf_from_point(t->s, on_lamp->lamp, from, &on_lamp->hit);
-    return mis_power(scatter_count, pdf_solid_angle, (float)lamp_count, pdf);
+    return scatter_weight(t, from, normal, lamp, on_lamp->arrived.direction,
+                          light_pdf_from_point(t->s, on_lamp->lamp, from, &on_lamp->hit), pdf_solid_angle, counts);
 }
 
 rgb direct_light_escaped(const transport *t, vec3 from, vec3 normal, vec3 direction, float pdf_solid_angle,
-                         int lamp_count, float scatter_count, rgb *by_group)
+                         light_counts counts, rgb *by_group)
 {
     const scene *s = t->s;
     rgb sum = rgb_gray(0.0f);
@@ -95,8 +161,8 @@ rgb direct_light_escaped(const transport *t, vec3 from, vec3 normal, vec3 direct
             continue;
         float weight = 1.0f;
         if (pdf_solid_angle > 0.0f)
-            weight = mis_power(scatter_count, pdf_solid_angle, (float)lamp_count,
-                               lamp_factor(t, from, normal, index, direction) * light_escaped_pdf(l, from, direction));
+            weight = scatter_weight(t, from, normal, index, direction, light_escaped_pdf(l, from, direction),
+                                    pdf_solid_angle, counts);
         sum = rgb_add(sum, rgb_scale(radiance, weight));
         add_to_group(by_group, l, rgb_scale(radiance, weight));
     }
@@ -161,6 +227,7 @@ static light_sums sample_scattering(const transport *t, eye_worker *worker, cons
          sampler_2d(where, SAMPLE_LOBE, path_vertex + SAMPLER_KEY_CHANCE).x >= counts.scatter_probability))
         return sums;
     const float mean_count = mean_scatter_count(counts), share = 1.0f / mean_count;
+    const light_counts against = {counts.light, mean_count};
     const vec3 from = vertex_position(v), normal = vertex_light_normal(v, BSDF_GATHERED);
     for (uint32_t i = 0; i < count; i++) {
         float u_lobe = sampler_2d_of(where, SAMPLE_LOBE, path_vertex, count, i).y; /* x decides the vertex's way on */
@@ -174,8 +241,8 @@ static light_sums sample_scattering(const transport *t, eye_worker *worker, cons
         if (!transport_trace_through_panes(t, worker, ray, &met)) {
             light_group_sums groups;
             rgb *of_group = light_group_sums_begin(&groups, by_group != NULL);
-            rgb escaped = direct_light_escaped(t, from, normal, scattered.direction, scattered.pdf_solid_angle,
-                                               counts.light, mean_count, of_group);
+            rgb escaped = direct_light_escaped(t, from, normal, scattered.direction, scattered.pdf_solid_angle, against,
+                                               of_group);
             add_sample(&sums, rgb_mul(rgb_mul(escaped, met.transmittance), scattered.weight));
             rgb reflected = rgb_scale(rgb_mul(met.transmittance, scattered.weight), share);
             *in_out_sky = rgb_add(*in_out_sky, rgb_mul(escaped, reflected));
@@ -186,8 +253,7 @@ static light_sums sample_scattering(const transport *t, eye_worker *worker, cons
         rgb emitted = rgb_mul(vertex_emission(t->s, &met), met.transmittance);
         if (rgb_is_black(emitted))
             continue;
-        float weight =
-            direct_light_scatter_weight(t, from, normal, &met, scattered.pdf_solid_angle, counts.light, mean_count);
+        float weight = direct_light_scatter_weight(t, from, normal, &met, scattered.pdf_solid_angle, against);
         rgb brought = rgb_scale(rgb_mul(emitted, scattered.weight), weight);
         add_sample(&sums, brought);
         add_to_group(by_group, met.lamp, rgb_scale(brought, share));

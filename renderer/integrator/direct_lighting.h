@@ -23,17 +23,30 @@ typedef struct lamp_light {
 lamp_light direct_light_sample_lamp(const transport *t, eye_worker *worker, const vertex *v, bsdf_lobes lobes,
                                     float u_pick, vec2 u, int lamp_count, float scatter_count);
 
+/* Samples all lights: each that reaches everywhere once, and one lamp of the others. So a place that a sun lights takes
+ * no more than its light, however seldom the direct guide would have picked it there. Returns the radiance that the
+ * vertex reflects, weighted against scatter_count samples by scattering. */
+rgb direct_light_sample_each(const transport *t, eye_worker *worker, const vertex *v, bsdf_lobes lobes, rng *random,
+                             float scatter_count);
+
+/* Samples by scattering, and the samples towards lamps that they are weighted against. */
+typedef struct light_counts {
+    int lamp;         /* samples of direct_light_sample_lamp; LIGHT_COUNT_EACH: one direct_light_sample_each */
+    float scattering; /* on average */
+} light_counts;
+#define LIGHT_COUNT_EACH 0
+
 /* Returns the weight of the radiance that a ray meets on a lamp. The ray was scattered with that density at `from`,
  * where vertex_light_normal is `normal`. */
 float direct_light_scatter_weight(const transport *t, vec3 from, vec3 normal, const vertex *on_lamp,
-                                  float pdf_solid_angle, int lamp_count, float scatter_count);
+                                  float pdf_solid_angle, light_counts counts);
 
 /* Returns the radiance of infinite lights along a ray that meets nothing, weighted as by direct_light_scatter_weight.
  * pdf_solid_angle: the density by which the ray was scattered, or 0 where no sample towards a lamp could stand for it
  * (the eye, smooth lobes), which makes the weight 1. by_group, here and below: the light is added there too, by groups
  * of lamps; or NULL. */
 rgb direct_light_escaped(const transport *t, vec3 from, vec3 normal, vec3 direction, float pdf_solid_angle,
-                         int lamp_count, float scatter_count, rgb *by_group);
+                         light_counts counts, rgb *by_group);
 
 /* The direct light at a diffuse vertex, estimated by samples towards lamps and by scattering. */
 typedef struct direct_light {

@@ -107,13 +107,16 @@ bool eye_path_trace(const transport *t, eye_worker *worker, eye_path *path, eye_
     return is_met;
 }
 
+/* Returns the samples that the path's light is weighted against. */
+static light_counts weighted_against(const eye_path *path) { return (light_counts){1, (float)path->scatter_count}; }
+
 void eye_path_add_escaped(const transport *t, const eye_path *path, eye_sample *sample)
 {
     light_group_sums groups;
     rgb *by_group = light_group_sums_begin(&groups, t->wants_groups);
     rgb weight = rgb_scale(path->throughput, path->share);
     rgb escaped = direct_light_escaped(t, path->scattered_from, path->scattered_normal, path->ray.direction,
-                                       path->scattered_pdf, 1, (float)path->scatter_count, by_group);
+                                       path->scattered_pdf, weighted_against(path), by_group);
     float kept = add_light(sample, path, path->wants_parts ? &path->parts : NULL, path->scatterings,
                            rgb_mul(weight, escaped), true);
     eye_sample_add_groups(sample, by_group, rgb_scale(weight, kept));
@@ -127,7 +130,7 @@ void eye_path_add_emitted(const transport *t, const eye_path *path, const vertex
     float weight = path->share;
     if (path->scattered_pdf > 0.0f)
         weight *= direct_light_scatter_weight(t, path->scattered_from, path->scattered_normal, v, path->scattered_pdf,
-                                              1, (float)path->scatter_count);
+                                              weighted_against(path));
     rgb seen = rgb_scale(rgb_mul(path->throughput, emitted), weight);
     float kept = add_light(sample, path, path->wants_parts ? &path->parts : NULL, path->scatterings, seen, false);
     if (t->wants_groups)

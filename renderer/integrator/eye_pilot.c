@@ -137,11 +137,12 @@ static void gather_points(const transport *t, eye_worker *worker, const vertex *
 {
     for (uint32_t i = 0; scatterings_left >= 1 && i < GATHER_RAYS; i++) {
         rng random = rng_make(where->key, (uint64_t)path_vertex, i);
+        rng side = rng_make(where->key, (uint64_t)path_vertex, GATHER_RAYS + i);
         vec2 u = sampler_2d_of(where, SAMPLE_GATHER, path_vertex, GATHER_RAYS, i);
         bsdf_sample first;
         vertex met;
-        gather_end end;
-        rgb known = rgb_gray(0.0f), weight;
+        gather_ends ends;
+        rgb known = rgb_gray(0.0f);
         if (!bsdf_sample_direction(&v->scattering, BSDF_GATHERED, BSDF_RADIANCE, rng_float(&random), u, &first))
             continue;
         scene_ray ray = transport_scattered_ray(t, v, first.direction, false);
@@ -150,12 +151,14 @@ static void gather_points(const transport *t, eye_worker *worker, const vertex *
             continue;
         if (!met.is_in_medium)
             note_caustic_way(t, &met, out);
-        if (gather_path_follow(t, worker, &met, random, scatterings_left, first.weight, 1.0f, &known, &end, &weight)) {
-            add_point(out, PILOT_GATHERED, end.point.position, end.point.normal);
-            if (i % POINTS_PER_IMPORTON == 0) {
-                out->importons++;
-                trace_importon(t, worker, &end, rng_make(random.state, (uint64_t)path_vertex, i), out);
-            }
+        if (!gather_path_follow(t, worker, &met, random, scatterings_left, first.weight, 1.0f, &known, &ends))
+            continue;
+        /* of two ends chance takes one, by its weight, so that a curtain counts no more than a wall */
+        gather_ends_pick(&ends, rng_float(&side));
+        add_point(out, PILOT_GATHERED, ends.end[0].point.position, ends.end[0].point.normal);
+        if (i % POINTS_PER_IMPORTON == 0) {
+            out->importons++;
+            trace_importon(t, worker, &ends.end[0], rng_make(random.state, (uint64_t)path_vertex, i), out);
         }
     }
 }

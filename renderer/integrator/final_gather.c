@@ -34,17 +34,17 @@ static int scatterings_left(const gathering *g) { return g->request->scatterings
  * it has brought on the way to what is known. first: the weight of its light at its start. */
 static void follow(gathering *g, uint32_t number, rgb first, vertex *v)
 {
-    gather_end end;
-    rgb weight, known = rgb_gray(0.0f);
+    gather_ends ends;
+    rgb known = rgb_gray(0.0f);
     rng random = ray_random(g, 0, number);
     rng_next(&random); /* skips the number that picked the lobe by which the ray left */
     uint64_t before = eye_worker_cost(g->worker);
-    bool asks = gather_path_follow(g->t, g->worker, v, random, scatterings_left(g), first, g->share_seen, &known, &end,
-                                   &weight);
+    bool asks =
+        gather_path_follow(g->t, g->worker, v, random, scatterings_left(g), first, g->share_seen, &known, &ends);
     g->cost += eye_worker_cost(g->worker) - before;
     g->known = rgb_add(g->known, known);
     if (asks)
-        gather_batch_ask(g->worker->batch, &end, number, weight, rgb_mean(known));
+        gather_batch_ask_all(g->worker->batch, &ends, number, rgb_mean(known));
     else
         gather_batch_note(g->worker->batch, rgb_mean(known));
 }
@@ -168,7 +168,7 @@ uint32_t final_gather(const transport *t, eye_worker *worker, const gather_reque
     rgb one_ray = rgb_scale(request->throughput, 1.0f / (float)count);
     gathering g = {t, worker, request, rgb_max(one_ray), rgb_gray(0.0f), 0};
     gather_batch *batch = worker->batch;
-    if (!gather_batch_has_room(batch, RAY_FAN_MAX))
+    if (!gather_batch_has_room(batch, GATHER_ENDS_MAX * RAY_FAN_MAX))
         final_gather_resolve(t, worker);
     if (run_is_cancelled(t->run)) /* the batch stays full, and the sample is thrown away */
         return 0;
@@ -185,7 +185,7 @@ uint32_t final_gather(const transport *t, eye_worker *worker, const gather_reque
     rays.fan.common.cone = transport_gather_cone(v);
     for (uint32_t begin = 0; begin < count && !run_is_cancelled(t->run); begin += RAY_FAN_MAX) {
         uint32_t end = count - begin < RAY_FAN_MAX ? count : begin + RAY_FAN_MAX;
-        if (!gather_batch_has_room(batch, end - begin))
+        if (!gather_batch_has_room(batch, GATHER_ENDS_MAX * (end - begin)))
             final_gather_resolve(t, worker);
         if (run_is_cancelled(t->run))
             break;

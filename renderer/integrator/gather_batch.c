@@ -45,6 +45,19 @@ void gather_batch_end(gather_batch *b, rgb known)
     b->is_open = false;
 }
 
+void gather_ends_pick(gather_ends *in_out_ends, float u)
+{
+    gather_ends *e = in_out_ends;
+    if (e->count < 2)
+        return;
+    float both = rgb_max(e->weight[0]) + rgb_max(e->weight[1]);
+    float second_share = both > 0.0f ? rgb_max(e->weight[1]) / both : 0.0f;
+    bool is_second = u < second_share;
+    e->end[0] = e->end[is_second];
+    e->weight[0] = rgb_scale(e->weight[is_second], 1.0f / (is_second ? second_share : 1.0f - second_share));
+    e->count = 1;
+}
+
 /* Returns the gather that a query belongs to, which is the first one whose queries end behind it. */
 static const gather *gather_of(const gather_batch *b, uint32_t query)
 {
@@ -70,7 +83,8 @@ uint32_t gather_batch_make_detours(gather_batch *b, uint32_t *in_out_query)
         surface_point point = {b->queries[i].position, b->queries[i].normal, rest->epsilon};
         const gather *g = gather_of(b, i);
         gather_end end = {point, rest->medium, rest->scatterings_left};
-        b->detours[count++] = (gather_detour){i, rest->number, g->key, end, b->weights[i], rgb_max(g->throughput)};
+        uint64_t key = rest->is_second_end ? hash_combine(g->key, GATHER_ENDS_MAX) : g->key;
+        b->detours[count++] = (gather_detour){i, rest->number, key, end, b->weights[i], rgb_max(g->throughput)};
         b->weights[i] = rgb_gray(1.0f);
         b->irradiance[i] = rgb_gray(0.0f);
     }
@@ -95,18 +109,19 @@ void gather_batch_sum(gather_batch *b)
     uint32_t query = 0, over = b->gather_count - (b->is_open ? 1 : 0);
     for (uint32_t i = 0; i < b->gather_count; i++) {
         gather *g = &b->gathers[i];
+        float brought = 0.0f; /* by the ray of the last query */
         for (; query < g->query_end; query++) {
             rgb read = rgb_mul(b->weights[query], b->irradiance[query]);
-            float brought = rgb_mean(read) + b->rests[query].known;
+            float before = b->rests[query].is_second_end ? brought : 0.0f;
+            brought = before + rgb_mean(read) + b->rests[query].known;
             g->read = rgb_add(g->read, read);
-            g->read_squares += brought * brought;
+            g->read_squares += brought * brought - before * before;
         }
         if (i >= over)
             break;
         gathered_light *sum = &b->gathered[g->sample];
-        rgb brought = rgb_mul(g->throughput, rgb_add(g->known, g->read)),
-            *to = g->is_first ? &sum->first : &sum->behind;
-        *to = rgb_add(*to, rgb_scale(brought, eye_bound(g->most, brought)));
+        rgb seen = rgb_mul(g->throughput, rgb_add(g->known, g->read)), *to = g->is_first ? &sum->first : &sum->behind;
+        *to = rgb_add(*to, rgb_scale(seen, eye_bound(g->most, seen)));
         sum->variance += sum_variance(g);
     }
     if (b->is_open)

@@ -25,6 +25,18 @@ typedef struct gather_end {
     int scatterings_left; /* the most between the lamp and the ray's last start; >= 1 */
 } gather_end;
 
+/* Where the light of a gather ray is asked for: on the side of a surface that the ray has met, and on the far side of
+ * one that light comes through. */
+enum { GATHER_ENDS_MAX = 2 };
+typedef struct gather_ends {
+    int count;
+    gather_end end[GATHER_ENDS_MAX];
+    rgb weight[GATHER_ENDS_MAX]; /* of the irradiance there, 1/sr */
+} gather_ends;
+
+/* Keeps one of two ends, by chance, in proportion to their weights. u: [0, 1). */
+void gather_ends_pick(gather_ends *in_out_ends, float u);
+
 /* All rays from one diffuse vertex of a camera path. */
 typedef struct gather {
     rgb throughput;  /* from the vertex to the eye, over the number of rays */
@@ -44,7 +56,8 @@ typedef struct gather_query_rest {
     float epsilon;
     uint32_t medium, number;
     int scatterings_left;
-    float known; /* mean of the three colours of what the ray brought itself */
+    float known;        /* mean of the three colours of what the ray brought itself */
+    bool is_second_end; /* of the ray of the query before */
 } gather_query_rest;
 
 /* The way, by further bounces, to the light of a query without an answer. */
@@ -102,8 +115,17 @@ static inline void gather_batch_ask(gather_batch *b, const gather_end *end, uint
 {
     b->queries[b->query_count] = (irradiance_query){end->point.position, end->point.normal};
     b->rests[b->query_count] =
-        (gather_query_rest){end->point.epsilon, end->medium, number, end->scatterings_left, known};
+        (gather_query_rest){end->point.epsilon, end->medium, number, end->scatterings_left, known, false};
     b->weights[b->query_count++] = weight;
+}
+
+/* Asks for the irradiance at all ends of a ray, of which there must be one at least. */
+static inline void gather_batch_ask_all(gather_batch *b, const gather_ends *ends, uint32_t number, float known)
+{
+    for (int i = 0; i < ends->count; i++) {
+        gather_batch_ask(b, &ends->end[i], number, ends->weight[i], i == 0 ? known : 0.0f);
+        b->rests[b->query_count - 1].is_second_end = i > 0;
+    }
 }
 
 /* Notes a ray of the open gather that asks for nothing. */

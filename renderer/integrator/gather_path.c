@@ -9,23 +9,39 @@
 enum { ROULETTE_AFTER = 4, SHORT_BOUNCES_MAX = 64 };
 
 /* Returns direct light and caustics at a diffuse vertex, which an estimate there would contain: radiance towards v's
- * `out`. */
-static rgb local_light(const transport *t, eye_worker *worker, const vertex *v, float share_seen, rng *random)
+ * `out`. goes_on: the path will bounce there, and lamps that it meets straight count. */
+static rgb local_light(const transport *t, eye_worker *worker, const vertex *v, float share_seen, bool goes_on,
+                       rng *random)
 {
-    float u_pick = rng_float(random), u_caustic = rng_float(random);
-    lamp_light direct = direct_light_sample_lamp(t, worker, v, BSDF_GATHERED, u_pick, rng_vec2(random), 1, 0.0f);
-    return rgb_add(direct.radiance,
+    float u_caustic = rng_float(random);
+    rgb direct = direct_light_sample_each(t, worker, v, BSDF_GATHERED, random, goes_on ? 1.0f : 0.0f);
+    return rgb_add(direct,
                    transport_some_caustics(t, worker, v, transport_caustic_probability(t, share_seen), u_caustic));
 }
 
-/* The last scattering of a gather ray by a medium, or by traced lobes behind that. From there on to the next diffuse
- * surface it is followed as a path tracer's: neither the direct light of the surface that gathers nor a caustic map has
- * the light that a medium has scattered. */
-typedef struct traced_start {
-    bool is_set;
+/* The last scattering of a gather ray from which lamps that it meets count, weighted against shadow rays from there. */
+typedef enum lit_from {
+    LIT_FROM_NOWHERE, /* lamps do not count: they are direct light where the gather began, or in the caustic map */
+    /* a diffuse surface that the ray has bounced on, from which lamps count that it meets straight: its local light has
+     * the others' */
+    LIT_FROM_BOUNCE,
+    /* a medium, or traced lobes behind that. From there on to the next diffuse surface it is followed as a path
+     * tracer's: neither the direct light of the surface that gathers nor a caustic map has the light that a medium has
+     * scattered */
+    LIT_FROM_MEDIUM
+} lit_from;
+
+typedef struct lit_start {
+    lit_from from;
     vec3 position, normal; /* normal: vertex_light_normal */
     float pdf;             /* of the ray that left it, 1/sr; 0: by a smooth lobe, for which no shadow ray can stand */
-} traced_start;
+} lit_start;
+
+/* Returns the samples that light from such a start is weighted against. */
+static light_counts weighted_against(const lit_start *start)
+{
+    return (light_counts){start->from == LIT_FROM_BOUNCE ? LIGHT_COUNT_EACH : 1, 1.0f};
+}
 
 /* A gather ray on its way. */
 typedef struct gather_ray {
@@ -37,44 +53,43 @@ typedef struct gather_ray {
     int scatterings;      /* passing a pane straight is none */
     int scatterings_left; /* between the lamp and the ray's last start */
     int in_media;         /* scatterings by media */
-    traced_start traced;
+    lit_start lit;
 } gather_ray;
 
 /* Returns what the light at the ray's end is multiplied by. */
 static rgb whole_throughput(const gather_ray *g) { return rgb_mul(g->start_throughput, g->throughput); }
 
-/* Ends the ray at a diffuse vertex with the irradiance on one side of it, which is picked by the lobes' shares. */
-static void end_at(const transport *t, const vertex *v, int scatterings_left, rgb throughput, float u_side,
-                   gather_end *out_end, rgb *out_weight)
+/* Ends the ray at a diffuse vertex, with the irradiance on its side, and on the far side where light comes through. A
+ * curtain's may differ by a hundred times, so that picking one side would be noise. */
+static void end_at(const transport *t, const vertex *v, int scatterings_left, rgb throughput, gather_ends *out)
 {
     map_point at = vertex_map_point(t->s, v);
-    rgb reflected = bsdf_gathered_reflection(&v->scattering), transmitted = bsdf_gathered_transmission(&v->scattering);
-    rgb factor = reflected;
-    if (!rgb_is_black(transmitted)) {
-        float share = rgb_max(transmitted) / (rgb_max(reflected) + rgb_max(transmitted));
-        bool is_through = u_side < share;
-        factor = is_through ? rgb_scale(transmitted, 1.0f / share) : rgb_scale(reflected, 1.0f / (1.0f - share));
-        if (is_through)
-            at.facing_normal = vec3_negate(at.facing_normal);
+    const rgb factors[GATHER_ENDS_MAX] = {bsdf_gathered_reflection(&v->scattering),
+                                          bsdf_gathered_transmission(&v->scattering)};
+    const vec3 normals[GATHER_ENDS_MAX] = {at.facing_normal, vec3_negate(at.facing_normal)};
+    out->count = 0;
+    for (int side = 0; side < GATHER_ENDS_MAX; side++) {
+        if (rgb_is_black(factors[side]))
+            continue;
+        out->end[out->count] =
+            (gather_end){{at.position, normals[side], v->hit.epsilon}, v->arrived.medium, scatterings_left};
+        out->weight[out->count++] = rgb_scale(rgb_mul(throughput, factors[side]), AG_INV_PI);
     }
-    *out_end = (gather_end){{at.position, at.facing_normal, v->hit.epsilon}, v->arrived.medium, scatterings_left};
-    *out_weight = rgb_scale(rgb_mul(throughput, factor), AG_INV_PI);
 }
 
-/* Takes the ray to the vertex that it has met, and adds what shines there to *in_out_known, weighted against shadow
- * rays from where the ray was traced on. */
+/* Takes the ray to the vertex that it has met, and adds what shines there to *in_out_known where lamps count. */
 static void arrive(const transport *t, gather_ray *g, vertex *v, rgb *in_out_known)
 {
-    const traced_start *from = &g->traced;
+    const lit_start *start = &g->lit;
     g->throughput = rgb_mul(g->throughput, v->transmittance);
     g->travelled += v->hit.distance;
     transport_complete(t, v);
-    if (!from->is_set)
+    if (start->from == LIT_FROM_NOWHERE)
         return;
     rgb emitted = vertex_emission(t->s, v);
-    if (!rgb_is_black(emitted) && from->pdf > 0.0f)
-        emitted =
-            rgb_scale(emitted, direct_light_scatter_weight(t, from->position, from->normal, v, from->pdf, 1, 1.0f));
+    if (!rgb_is_black(emitted) && start->pdf > 0.0f)
+        emitted = rgb_scale(emitted, direct_light_scatter_weight(t, start->position, start->normal, v, start->pdf,
+                                                                 weighted_against(start)));
     *in_out_known = rgb_add(*in_out_known, rgb_mul(whole_throughput(g), emitted));
 }
 
@@ -92,11 +107,10 @@ static void begin_short_bounce(const transport *t, eye_worker *worker, gather_ra
                                rgb *in_out_known)
 {
     rgb weight = whole_throughput(g);
-    rgb local = local_light(t, worker, v, share_seen * rgb_max(weight), &g->random);
+    rgb local = local_light(t, worker, v, share_seen * rgb_max(weight), g->scatterings_left > 1, &g->random);
     *in_out_known = rgb_add(*in_out_known, rgb_mul(weight, local));
     g->travelled = 0.0f;
     g->short_bounces++;
-    g->traced.is_set = false;
 }
 
 /* Sends the ray on from the vertex by these lobes, and adds the direct light that they scatter where the ray is traced
@@ -107,7 +121,7 @@ static bool scatter(const transport *t, eye_worker *worker, gather_ray *g, const
     bool is_counted = !v->is_in_medium || t->media_are_bounded;
     g->in_media += v->is_in_medium;
     bool is_last = (is_counted && g->scatterings_left == 1) || g->in_media == MEDIUM_SCATTERINGS_MAX;
-    bool is_traced = lobes == BSDF_TRACED && (v->is_in_medium || g->traced.is_set);
+    bool is_traced = lobes == BSDF_TRACED && (v->is_in_medium || g->lit.from == LIT_FROM_MEDIUM);
     if (is_traced && bsdf_is_sampled_from_light(&v->scattering, BSDF_TRACED)) {
         float u_pick = rng_float(&g->random);
         lamp_light direct =
@@ -126,52 +140,63 @@ static bool scatter(const transport *t, eye_worker *worker, gather_ray *g, const
     g->scatterings_left -= is_counted && !goes_straight;
     if (g->scatterings_left == 0 || (v->is_in_medium && is_last))
         return false;
-    if (is_traced && !goes_straight)
-        g->traced = (traced_start){true, vertex_position(v), vertex_light_normal(v, BSDF_TRACED),
-                                   next.is_delta ? 0.0f : next.pdf_solid_angle};
+    if (!goes_straight)
+        g->lit =
+            (lit_start){is_traced                ? LIT_FROM_MEDIUM
+                        : lobes == BSDF_GATHERED ? LIT_FROM_BOUNCE
+                                                 : LIT_FROM_NOWHERE,
+                        vertex_position(v), vertex_light_normal(v, lobes), next.is_delta ? 0.0f : next.pdf_solid_angle};
     *out_ray = goes_straight ? vertex_ray_straight(v) : transport_scattered_ray(t, v, next.direction, true);
     out_ray->skips_uv = true;
     return true;
 }
 
-/* Adds the light of infinite lights along a ray that has escaped, where it was traced as a path tracer's. */
+/* Adds the light of infinite lights along a ray that has escaped, where lamps count. */
 static void add_escaped(const transport *t, const gather_ray *g, vec3 direction, rgb transmittance, rgb *in_out_known)
 {
-    const traced_start *from = &g->traced;
-    if (!from->is_set)
+    const lit_start *start = &g->lit;
+    if (start->from == LIT_FROM_NOWHERE)
         return;
-    rgb escaped = direct_light_escaped(t, from->position, from->normal, direction, from->pdf, 1, 1.0f, NULL);
+    rgb escaped =
+        direct_light_escaped(t, start->position, start->normal, direction, start->pdf, weighted_against(start), NULL);
     *in_out_known = rgb_add(*in_out_known, rgb_mul(rgb_mul(whole_throughput(g), transmittance), escaped));
 }
 
+/* Follows a ray that has met *v. */
+static bool follow(const transport *t, eye_worker *worker, gather_ray *g, vertex *v, float share_seen,
+                   rgb *in_out_known, gather_ends *out_ends)
+{
+    for (;;) {
+        arrive(t, g, v, in_out_known);
+        bool is_near = g->travelled < t->gather_min_distance && g->short_bounces < SHORT_BOUNCES_MAX;
+        float u_lobe = rng_float(&g->random), u_group = rng_float(&g->random);
+        vec2 u = rng_vec2(&g->random);
+        bsdf_lobes lobes = pick_group(g, v, u_group);
+        if (lobes == BSDF_GATHERED && !is_near) {
+            end_at(t, v, g->scatterings_left, whole_throughput(g), out_ends);
+            return out_ends->count > 0;
+        }
+        if (lobes == BSDF_GATHERED) /* an estimate is blurred over about that distance, which is too coarse so near */
+            begin_short_bounce(t, worker, g, v, share_seen, in_out_known);
+        scene_ray ray;
+        if (!scatter(t, worker, g, v, lobes, u_lobe, u, in_out_known, &ray))
+            return false;
+        worker->rays_gather++;
+        if (!transport_travel_to(t, worker, ray, whole_throughput(g), &g->random, v)) {
+            add_escaped(t, g, ray.direction, v->transmittance, in_out_known);
+            return false;
+        }
+    }
+}
+
 bool gather_path_follow(const transport *t, eye_worker *worker, vertex *v, rng random, int scatterings_left,
-                        rgb throughput, float share_seen, rgb *in_out_known, gather_end *out_end, rgb *out_weight)
+                        rgb throughput, float share_seen, rgb *in_out_known, gather_ends *out_ends)
 {
     gather_ray g = {.random = random,
                     .start_throughput = throughput,
                     .throughput = rgb_gray(1.0f),
                     .scatterings_left = scatterings_left};
-    for (;;) {
-        arrive(t, &g, v, in_out_known);
-        bool is_near = g.travelled < t->gather_min_distance && g.short_bounces < SHORT_BOUNCES_MAX;
-        float u_lobe = rng_float(&g.random), u_group = rng_float(&g.random);
-        vec2 u = rng_vec2(&g.random);
-        bsdf_lobes lobes = pick_group(&g, v, u_group);
-        if (lobes == BSDF_GATHERED && !is_near) {
-            end_at(t, v, g.scatterings_left, whole_throughput(&g), u_lobe, out_end, out_weight);
-            return true;
-        }
-        if (lobes == BSDF_GATHERED) /* an estimate is blurred over about that distance, which is too coarse so near */
-            begin_short_bounce(t, worker, &g, v, share_seen, in_out_known);
-        scene_ray ray;
-        if (!scatter(t, worker, &g, v, lobes, u_lobe, u, in_out_known, &ray))
-            return false;
-        worker->rays_gather++;
-        if (!transport_travel_to(t, worker, ray, whole_throughput(&g), &g.random, v)) {
-            add_escaped(t, &g, ray.direction, v->transmittance, in_out_known);
-            return false;
-        }
-    }
+    return follow(t, worker, &g, v, share_seen, in_out_known, out_ends);
 }
 
 void gather_end_make_white(const gather_end *end, vertex *v)
@@ -199,17 +224,30 @@ bool gather_path_bounce(const transport *t, eye_worker *worker, rng random, floa
     bsdf_sample next;
     rgb throughput = rgb_scale(*in_out_weight, AG_PI);
     gather_end_make_white(in_out_end, &v);
-    rgb local = local_light(t, worker, &v, share_seen * rgb_max(throughput), &random);
-    *in_out_known = rgb_add(*in_out_known, rgb_mul(throughput, local));
     int left = in_out_end->scatterings_left - 1;
+    rgb local = local_light(t, worker, &v, share_seen * rgb_max(throughput), left > 0, &random);
+    *in_out_known = rgb_add(*in_out_known, rgb_mul(throughput, local));
     vec2 u = rng_vec2(&random);
+    float u_end = rng_float(&random);
     if (left == 0 || !transport_survives(&throughput, 0, rng_float(&random)) ||
         !bsdf_sample_direction(&v.scattering, BSDF_GATHERED, BSDF_RADIANCE, 0.0f, u, &next))
         return false;
     scene_ray ray = transport_scattered_ray(t, &v, next.direction, false);
     worker->rays_gather++;
-    throughput = rgb_mul(throughput, next.weight);
-    return transport_travel_to(t, worker, ray, throughput, &random, &v) &&
-           gather_path_follow(t, worker, &v, random, left, throughput, share_seen, in_out_known, in_out_end,
-                              in_out_weight);
+    gather_ray g = {
+        .start_throughput = rgb_mul(throughput, next.weight),
+        .throughput = rgb_gray(1.0f),
+        .scatterings_left = left,
+        .lit = {LIT_FROM_BOUNCE, vertex_position(&v), vertex_light_normal(&v, BSDF_GATHERED), next.pdf_solid_angle}};
+    gather_ends ends;
+    bool is_met = transport_travel_to(t, worker, ray, g.start_throughput, &random, &v);
+    g.random = random;
+    if (!is_met)
+        add_escaped(t, &g, ray.direction, v.transmittance, in_out_known);
+    if (!is_met || !follow(t, worker, &g, &v, share_seen, in_out_known, &ends))
+        return false;
+    gather_ends_pick(&ends, u_end);
+    *in_out_end = ends.end[0];
+    *in_out_weight = ends.weight[0];
+    return true;
 }

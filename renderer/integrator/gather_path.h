@@ -9,13 +9,13 @@
 /* Follows a gather ray that has met *v: through traced lobes, and by a bounce more where it is still too near for the
  * cache. scatterings_left: how many there may be between the ray's start and the lamp; >= 1. throughput: what the light
  * behind the ray is multiplied by; share_seen: how much of that again reaches the eye. Adds to *in_out_known what
- * direct light and caustics on the way bring. Returns true where there is more light: the irradiance at out_end->point
- * times *out_weight (1/sr). Lamps and environments that the ray meets add nothing: their light is direct light where it
- * comes straight, and in the caustic map where it comes by way of traced lobes. But behind a point where a medium has
- * scattered the ray it is followed as a path tracer's up to the next diffuse surface: shadow rays, and lamps that it
- * meets, add to *in_out_known. */
+ * direct light and caustics on the way bring. Returns true where there is more light: the irradiance at each of
+ * *out_ends times its weight. Lamps and environments that the ray meets add nothing: their light is direct light where
+ * it comes straight, and in the caustic map where it comes by way of traced lobes. But a bounce samples direct light by
+ * where it goes on, too, and behind a point where a medium has scattered the ray it is followed as a path tracer's up
+ * to the next diffuse surface: shadow rays, and lamps that it meets, add to *in_out_known. */
 bool gather_path_follow(const transport *t, eye_worker *worker, vertex *v, rng random, int scatterings_left,
-                        rgb throughput, float share_seen, rgb *in_out_known, gather_end *out_end, rgb *out_weight);
+                        rgb throughput, float share_seen, rgb *in_out_known, gather_ends *out_ends);
 
 /* Replaces the irradiance at an end where no estimate holds by that of one more bounce. Adds to *in_out_known what
  * direct light and caustics bring at the end and on the way, times *in_out_weight. Returns true where there is more

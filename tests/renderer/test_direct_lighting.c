@@ -96,6 +96,93 @@ static void lights_without_extent(void **state)
     eye_reset(&e);
 }
 
+/* A sample of each light, and a ray by the cosine that is weighted against it, as a gather ray's bounce takes them.
+ * Returns the radiance that they bring. */
+static double each_and_bounce(eye *e, const vertex *v, rng *random)
+{
+    const light_counts against = {LIGHT_COUNT_EACH, 1.0f};
+    rgb sum = direct_light_sample_each(&e->t, e->worker, v, BSDF_GATHERED, random, 1.0f);
+    vec3 normal = vertex_light_normal(v, BSDF_GATHERED);
+    bsdf_sample next;
+    assert_true(bsdf_sample_direction(&v->scattering, BSDF_GATHERED, BSDF_RADIANCE, 0.0f, rng_vec2(random), &next));
+    vertex met;
+    rgb brought;
+    if (!transport_trace(&e->t, e->worker, transport_scattered_ray(&e->t, v, next.direction, false), &met))
+        brought = direct_light_escaped(&e->t, vertex_position(v), normal, next.direction, next.pdf_solid_angle, against,
+                                       NULL);
+    else if (rgb_is_black(brought = vertex_emission(e->t.s, &met)))
+        return (double)sum.g;
+    else
+        brought = rgb_scale(brought, direct_light_scatter_weight(&e->t, vertex_position(v), normal, &met,
+                                                                 next.pdf_solid_angle, against));
+    return (double)rgb_add(sum, rgb_mul(brought, next.weight)).g;
+}
+
+/* A ball, a sky, a point and a sun together, as above, by a sample of each, alone and with a bounce. Beside the floor's
+ * middle, in the ball's shadow of the sun, nothing but that is missing. */
+static void each_light(void **state)
+{
+    (void)state;
+    eye e;
+    eye_init(&e,
+             FLOOR "AttributeBegin Translate 0 0 2 AreaLightSource \"diffuse\" \"rgb L\" [1 10 1]"
+                   " Shape \"sphere\" \"float radius\" 1 AttributeEnd LightSource \"infinite\" \"rgb L\" [2 2 2]"
+                   " LightSource \"point\" \"rgb I\" [8 8 8] \"point3 from\" [2 0 2]"
+                   " LightSource \"distant\" \"rgb L\" [3 3 3] \"point3 from\" [0 1.7320508 1] \"point3 to\" [0 0 0]");
+    vertex v = eye_meet(&e, (vec3){0.0f, 0.0f, 0.5f}, (vec3){0.0f, 0.0f, -1.0f});
+    /* the ball hides a quarter of the sky, by the cosine; the point is 2 sqrt 2 away at 45 degrees */
+    double expected = REFLECTANCE * (10.0 * 0.25 + 2.0 * 0.75) + REFLECTANCE / PI * (8.0 / 8.0 * sqrt(0.5) + 3.0 * 0.5);
+    mean_sum alone = {0}, together = {0};
+    for (uint32_t i = 0; i < SAMPLES; i++) {
+        rng random = test_random(i);
+        mean_add(&alone, (double)direct_light_sample_each(&e.t, e.worker, &v, BSDF_GATHERED, &random, 0.0f).g);
+        mean_add(&together, each_and_bounce(&e, &v, &random));
+    }
+    assert_mean(&alone, expected, 1e-4);
+    assert_mean(&together, expected, 1e-4);
+    eye_reset(&e);
+}
+
+/* However wrong the guide is about a place, a sun brings no more than its light, and a sky's sample at most twice what
+ * it brings without a guide. A guide that picks one light for a sample would bring ten times the sun. */
+static void wrong_guide_makes_no_specks(void **state)
+{
+    (void)state;
+    eye e;
+    eye_init(&e, FLOOR "LightSource \"infinite\" \"rgb L\" [1 1 1]"
+                       " LightSource \"distant\" \"rgb L\" [3 3 3] \"point3 from\" [0 0 1] \"point3 to\" [0 0 0]");
+    vertex v = eye_meet(&e, (vec3){0.0f, 0.0f, 0.5f}, (vec3){0.0f, 0.0f, -1.0f});
+    vec3 positions[DIRECT_GUIDE_CELL_POINTS], normals[DIRECT_GUIDE_CELL_POINTS];
+    uint32_t order[DIRECT_GUIDE_CELL_POINTS];
+    for (int i = 0; i < DIRECT_GUIDE_CELL_POINTS; i++) {
+        positions[i] = (vec3){0.01f * (float)i, 0.0f, 0.0f};
+        normals[i] = (vec3){0.0f, 0.0f, 1.0f};
+    }
+    direct_guide guide;
+    assert_int_equal(direct_guide_create(e.t.s, positions, normals, DIRECT_GUIDE_CELL_POINTS, order, &guide), AG_OK);
+    direct_bins seen = {.of[3][5] = 1.0f}; /* a hole */
+    const float brought[3] = {1.0f, 0.0f, 0.0f};
+    for (uint32_t i = 0; i < guide.cell_count; i++)
+        direct_guide_fill(&guide, i, 0.8f, brought, &seen);
+    e.t.direct_guide = &guide;
+    assert_true(direct_guide_find(&guide, vertex_position(&v), normals[0]) != DIRECT_GUIDE_NO_CELL);
+    const double of_sun = REFLECTANCE / PI * 3.0;
+    mean_sum alone = {0}, together = {0};
+    for (uint32_t i = 0; i < SAMPLES; i++) {
+        rng random = test_random(i);
+        double radiance = (double)direct_light_sample_each(&e.t, e.worker, &v, BSDF_GATHERED, &random, 0.0f).g;
+        /* over a sky alike all over, its own sampling brings 4 rho L cos at most, and half of it is this */
+        assert_true(radiance >= of_sun * (1.0 - 1e-5) && radiance <= of_sun + 2.0 * 4.0 * REFLECTANCE);
+        mean_add(&alone, radiance);
+        mean_add(&together, each_and_bounce(&e, &v, &random));
+    }
+    assert_mean(&alone, REFLECTANCE + of_sun, 1e-4);
+    assert_mean(&together, REFLECTANCE + of_sun, 1e-4);
+    direct_guide_reset(&guide);
+    e.t.direct_guide = NULL;
+    eye_reset(&e);
+}
+
 /* The lower half of the sky is behind the floor's back: a floor that looks down sees nothing of a lamp above. */
 static void nothing_from_behind(void **state)
 {
@@ -111,8 +198,12 @@ static void nothing_from_behind(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(ball), cmocka_unit_test(variance_is_told),
-                                       cmocka_unit_test(sky), cmocka_unit_test(lights_without_extent),
-                                       cmocka_unit_test(nothing_from_behind)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(ball),
+                                       cmocka_unit_test(variance_is_told),
+                                       cmocka_unit_test(sky),
+                                       cmocka_unit_test(lights_without_extent),
+                                       cmocka_unit_test(nothing_from_behind),
+                                       cmocka_unit_test(each_light),
+                                       cmocka_unit_test(wrong_guide_makes_no_specks)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

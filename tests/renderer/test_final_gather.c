@@ -115,9 +115,45 @@ static void wall_in_a_mirror(void **state)
     eye_reset(&e);
 }
 
+/* A dome of cloth, which lets 0.2 through, and no light comes from outside: each single ray brings what is inside, with
+ * the field's noise alone. If it asked one side by chance, it would bring all or nothing. */
+static void ray_asks_both_sides_of_a_cloth(void **state)
+{
+    (void)state;
+    eye e;
+    eye_init_with_photons(&e,
+                          "Material \"diffusetransmission\" \"rgb reflectance\" [0.3 0.3 0.3]"
+                          " \"rgb transmittance\" [0.2 0.2 0.2] ReverseOrientation"
+                          " Shape \"sphere\" \"float radius\" 1 " PLATE,
+                          PHOTONS, NEAREST);
+    vertex v = eye_meet(&e, (vec3){0.0f, 0.0f, 0.5f}, (vec3){0.0f, 0.0f, -1.0f});
+    mean_sum sum = {0};
+    double squares = 0.0, radiance = 0.8 * 0.3 * dome_irradiance() / PI;
+    for (uint32_t i = 0; i < GATHERS * RAYS; i++) {
+        sampler where = sampler_make(i, 3, 4, 0, 0);
+        gather_request request = {.from = &v,
+                                  .where = &where,
+                                  .is_first = true,
+                                  .scatterings_left = 100,
+                                  .count = 1,
+                                  .throughput = rgb_gray(1.0f),
+                                  .share = 1.0f};
+        final_gather(&e.t, e.worker, &request);
+        final_gather_resolve(&e.t, e.worker);
+        double brought = (double)e.worker->batch->gathered[0].first.r;
+        mean_add(&sum, brought);
+        squares += (brought - radiance) * (brought - radiance) / (GATHERS * RAYS);
+        e.worker->batch->gathered[0] = (gathered_light){0};
+    }
+    assert_mean(&sum, radiance, field_bound());
+    assert_true(squares < 2.0 / NEAREST * radiance * radiance); /* of k nearest photons the share 1 / k */
+    eye_reset(&e);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(plate_under_a_dome), cmocka_unit_test(wall_of_a_sphere),
-                                       cmocka_unit_test(wall_in_a_mirror)};
+                                       cmocka_unit_test(wall_in_a_mirror),
+                                       cmocka_unit_test(ray_asks_both_sides_of_a_cloth)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,5 +1,6 @@
 /* test_gather_batch.c: what gather rays over a hemisphere of known radiance come to: their mean and its variance in
- * closed form, the same bits whenever the batch is resolved, bounds, and queries without an answer. Threads: one. */
+ * closed form, the same bits whenever the batch is resolved, bounds, rays with two ends, and queries without an answer.
+ * Threads: one. */
 #include "fixtures/test_scene.h"
 
 #include "integrator/gather_batch.h"
@@ -63,6 +64,55 @@ static void mean_over_a_hemisphere(void **state)
     }
     gather_batch_destroy(b);
     gather_batch_destroy(NULL);
+}
+
+/* Rays that end at two sides of a cloth are no more rays: light and variance are those of rays with one end that brings
+ * the sum. */
+static void two_ends_are_of_one_ray(void **state)
+{
+    (void)state;
+    gather_batch *b = batch_create(INFINITY);
+    for (uint32_t sample = 0; sample < 2; sample++) {
+        gather_batch_begin(b, sample, true, rgb_gray(1.0f / RAYS), 1.0f, RAYS, 0);
+        for (uint32_t i = 0; i < RAYS; i++) {
+            gather_ends ends = {.count = sample == 0 ? 1 : 2, .end = {end_of(i), end_of(i)}};
+            ends.weight[0] = rgb_gray(sample == 0 ? 1.0f : 0.25f);
+            ends.weight[1] = rgb_gray(0.75f);
+            gather_batch_ask_all(b, &ends, i, 0.5f);
+        }
+        gather_batch_end(b, rgb_gray(0.5f * RAYS));
+    }
+    assert_int_equal(b->query_count, 3 * RAYS);
+    answer(b);
+    gather_batch_sum(b);
+    const gathered_light *one = &b->gathered[0], *two = &b->gathered[1];
+    assert_true(one->variance > 0.0f);
+    assert_relative((double)two->first.g, (double)one->first.g, 1e-5);
+    assert_relative((double)two->variance, (double)one->variance, 1e-3);
+    gather_batch_destroy(b);
+}
+
+/* One of two ends, by its weight: on average both count in full. Ends of no weight stay so. */
+static void one_end_of_two(void **state)
+{
+    (void)state;
+    enum { PICKS = 1000 };
+    double sums[2] = {0.0};
+    for (int i = 0; i < PICKS; i++) {
+        gather_ends ends = {.count = 2, .weight = {{0.3f, 0.1f, 0.2f}, {0.1f, 0.1f, 0.05f}}};
+        ends.end[1].medium = 1;
+        gather_ends_pick(&ends, ((float)i + 0.5f) / PICKS);
+        assert_int_equal(ends.count, 1);
+        sums[ends.end[0].medium] += (double)ends.weight[0].b / PICKS;
+    }
+    assert_close(sums[0], 0.2, 1e-3);
+    assert_close(sums[1], 0.05, 1e-3);
+    gather_ends black = {.count = 2};
+    gather_ends_pick(&black, 0.5f);
+    assert_true(black.count == 1 && rgb_is_black(black.weight[0]));
+    gather_ends single = {.count = 1, .weight = {{1.0f, 2.0f, 3.0f}}};
+    gather_ends_pick(&single, 0.99f);
+    assert_true(single.count == 1 && single.weight[0].g == 2.0f);
 }
 
 /* The light of one gather among others, where the batch is resolved after this many of its rays. Every eighth ray
@@ -179,7 +229,10 @@ static void detours(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(mean_over_a_hemisphere),
-                                       cmocka_unit_test(same_bits_whenever_it_is_resolved), cmocka_unit_test(bounded),
+                                       cmocka_unit_test(same_bits_whenever_it_is_resolved),
+                                       cmocka_unit_test(bounded),
+                                       cmocka_unit_test(two_ends_are_of_one_ray),
+                                       cmocka_unit_test(one_end_of_two),
                                        cmocka_unit_test(detours)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
