@@ -75,6 +75,9 @@ lamp_light direct_light_sample_lamp(const transport *t, eye_worker *worker, cons
                         sample.direction};
 }
 
+/* With more lights that reach everywhere a sample of each would cost too much. */
+enum { EACH_LIGHTS_MAX = 8 };
+
 /* The share of direct_light_sample_each's samples whose direction a cell of the direct guide decides. */
 static const float EACH_GUIDED_SHARE = 0.5f;
 
@@ -94,6 +97,10 @@ rgb direct_light_sample_each(const transport *t, eye_worker *worker, const verte
     if (!t->has_lights)
         return sum;
     const scene *s = t->s;
+    if (s->everywhere_count > EACH_LIGHTS_MAX) {
+        float u_light = rng_float(random);
+        return direct_light_sample_lamp(t, worker, v, lobes, u_light, rng_vec2(random), 1, scatter_count).radiance;
+    }
     vec3 from = vertex_position(v), normal = vertex_light_normal(v, lobes);
     uint32_t cell = direct_guide_find(t->direct_guide, from, normal);
     light_sample sample;
@@ -128,16 +135,18 @@ static void add_to_group(rgb *by_group, const light *lamp, rgb light_brought)
 static float scatter_weight(const transport *t, vec3 from, vec3 normal, uint32_t lamp, vec3 direction, float own_pdf,
                             float pdf_solid_angle, light_counts counts)
 {
-    if (counts.lamp != LIGHT_COUNT_EACH)
-        return mis_power(counts.scattering, pdf_solid_angle, (float)counts.lamp,
-                         picked_factor(t, from, normal, lamp, direction) * own_pdf);
     const light *l = &t->s->lights[lamp];
-    float factor = 0.0f;
-    if (light_is_everywhere(l))
+    float factor;
+    if (counts.lamp != LIGHT_COUNT_EACH || t->s->everywhere_count > EACH_LIGHTS_MAX)
+        factor = picked_factor(t, from, normal, lamp, direction);
+    else if (!(rgb_mean(l->power) > 0.0f))
+        factor = 0.0f;
+    else if (light_is_everywhere(l))
         factor = each_factor(t, direct_guide_find(t->direct_guide, from, normal), lamp, direction);
-    else if (rgb_mean(l->power) > 0.0f)
+    else
         factor = light_tree_probability(t->s->light_tree, lamp, from, normal);
-    return mis_power(counts.scattering, pdf_solid_angle, 1.0f, factor * own_pdf);
+    float lamp_count = counts.lamp == LIGHT_COUNT_EACH ? 1.0f : (float)counts.lamp;
+    return mis_power(counts.scattering, pdf_solid_angle, lamp_count, factor * own_pdf);
 }
 
 float direct_light_scatter_weight(const transport *t, vec3 from, vec3 normal, const vertex *on_lamp,

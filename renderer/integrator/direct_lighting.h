@@ -24,8 +24,9 @@ lamp_light direct_light_sample_lamp(const transport *t, eye_worker *worker, cons
                                     float u_pick, vec2 u, int lamp_count, float scatter_count);
 
 /* Samples all lights: each that reaches everywhere once, and one lamp of the others. So a place that a sun lights takes
- * no more than its light, however seldom the direct guide would have picked it there. Returns the radiance that the
- * vertex reflects, weighted against scatter_count samples by scattering. */
+ * no more than its light, however seldom the direct guide would have picked it there. Where more than eight lights
+ * reach everywhere (portals do), it is one sample of a light that is picked. Returns the radiance that the vertex
+ * reflects, weighted against scatter_count samples by scattering. */
 rgb direct_light_sample_each(const transport *t, eye_worker *worker, const vertex *v, bsdf_lobes lobes, rng *random,
                              float scatter_count);
 
@@ -34,7 +35,7 @@ typedef struct light_counts {
     int lamp;         /* samples of direct_light_sample_lamp; LIGHT_COUNT_EACH: one direct_light_sample_each */
     float scattering; /* on average */
 } light_counts;
-#define LIGHT_COUNT_EACH 0
+#define LIGHT_COUNT_EACH (-1)
 
 /* Returns the weight of the radiance that a ray meets on a lamp. The ray was scattered with that density at `from`,
  * where vertex_light_normal is `normal`. */

@@ -109,13 +109,16 @@ void gather_batch_sum(gather_batch *b)
     uint32_t query = 0, over = b->gather_count - (b->is_open ? 1 : 0);
     for (uint32_t i = 0; i < b->gather_count; i++) {
         gather *g = &b->gathers[i];
-        float brought = 0.0f; /* by the ray of the last query */
+        float brought = 0.0f; /* by the queries of one ray */
         for (; query < g->query_end; query++) {
             rgb read = rgb_mul(b->weights[query], b->irradiance[query]);
-            float before = b->rests[query].is_second_end ? brought : 0.0f;
-            brought = before + rgb_mean(read) + b->rests[query].known;
+            bool is_over = query + 1 == g->query_end || !b->rests[query + 1].is_second_end;
+            brought += rgb_mean(read) + b->rests[query].known;
             g->read = rgb_add(g->read, read);
-            g->read_squares += brought * brought - before * before;
+            if (!is_over)
+                continue;
+            g->read_squares += brought * brought;
+            brought = 0.0f;
         }
         if (i >= over)
             break;

@@ -119,7 +119,8 @@ static inline void gather_batch_ask(gather_batch *b, const gather_end *end, uint
     b->weights[b->query_count++] = weight;
 }
 
-/* Asks for the irradiance at all ends of a ray, of which there must be one at least. */
+/* Asks for the irradiance at all ends of a ray, one at least, in a batch that has room for them. known, as above,
+ * counts with the first. */
 static inline void gather_batch_ask_all(gather_batch *b, const gather_ends *ends, uint32_t number, float known)
 {
     for (int i = 0; i < ends->count; i++) {

@@ -118,8 +118,7 @@ static double each_and_bounce(eye *e, const vertex *v, rng *random)
     return (double)rgb_add(sum, rgb_mul(brought, next.weight)).g;
 }
 
-/* A ball, a sky, a point and a sun together, as above, by a sample of each, alone and with a bounce. Beside the floor's
- * middle, in the ball's shadow of the sun, nothing but that is missing. */
+/* A ball, a sky, a point and a sun together, as above, by a sample of each, alone and with a bounce. */
 static void each_light(void **state)
 {
     (void)state;
@@ -140,6 +139,28 @@ static void each_light(void **state)
     }
     assert_mean(&alone, expected, 1e-4);
     assert_mean(&together, expected, 1e-4);
+    eye_reset(&e);
+}
+
+/* More skies than are sampled each: one of them is picked, with the weights that belong to that. */
+static void many_skies(void **state)
+{
+    (void)state;
+    static const char ONE[] = " LightSource \"infinite\" \"rgb L\" [1 1 1]";
+    enum { SKIES = 9 };
+    char world[sizeof FLOOR + SKIES * sizeof ONE] = FLOOR;
+    for (int i = 0; i < SKIES; i++)
+        strcat(world, ONE);
+    eye e;
+    eye_init(&e, world);
+    vertex v = eye_meet(&e, (vec3){0.0f, 0.0f, 0.5f}, (vec3){0.0f, 0.0f, -1.0f});
+    mean_sum sum = {0};
+    for (uint32_t i = 0; i < SAMPLES; i++) {
+        rng random = test_random(i);
+        mean_add(&sum, each_and_bounce(&e, &v, &random));
+    }
+    assert_mean(&sum, REFLECTANCE * SKIES, 1e-4);
+    assert_true(e.worker->rays_shadow <= SAMPLES);
     eye_reset(&e);
 }
 
@@ -204,6 +225,7 @@ int main(void)
                                        cmocka_unit_test(lights_without_extent),
                                        cmocka_unit_test(nothing_from_behind),
                                        cmocka_unit_test(each_light),
+                                       cmocka_unit_test(many_skies),
                                        cmocka_unit_test(wrong_guide_makes_no_specks)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -6,6 +6,7 @@
 #include "fixtures/eye_fixture.h"
 
 #include "integrator/final_gather.h"
+#include "integrator/gather_path.h"
 #include "integrator/shading.h"
 
 enum { PHOTONS = 200000 / FEWER, NEAREST = 50, GATHERS = 400, RAYS = 64, SAMPLES = 400 };
@@ -150,10 +151,82 @@ static void ray_asks_both_sides_of_a_cloth(void **state)
     eye_reset(&e);
 }
 
+/* In a closed sphere that shines L inward and reflects rho, light after k scatterings is L rho^k. With an infinite
+ * distance to the cache gather rays bounce until they end: n scatterings bring k = 2 to n. */
+static void bounces_in_a_shining_sphere(void **state)
+{
+    (void)state;
+    static const int LEFT[] = {2, 3, 100};
+    eye e;
+    eye_init_with_photons(&e,
+                          "AreaLightSource \"diffuse\" \"rgb L\" [2 2 2] Material \"diffuse\" \"rgb reflectance\""
+                          " [0.5 0.5 0.5] ReverseOrientation Shape \"sphere\" \"float radius\" 1",
+                          NEAREST, NEAREST);
+    e.t.gather_min_distance = INFINITY;
+    vertex v = eye_meet(&e, (vec3){0.2f, 0.0f, 0.0f}, (vec3){0.0f, 0.0f, -1.0f});
+    for (size_t k = 0; k < sizeof LEFT / sizeof *LEFT; k++) {
+        mean_sum sum = {0};
+        for (uint32_t i = 0; i < GATHERS; i++) {
+            sampler where = sampler_make(i, 3, 4, 0, 0);
+            gather_request request = {.from = &v,
+                                      .where = &where,
+                                      .is_first = true,
+                                      .scatterings_left = LEFT[k],
+                                      .count = RAYS,
+                                      .throughput = rgb_gray(1.0f),
+                                      .share = 1.0f};
+            final_gather(&e.t, e.worker, &request);
+            take_gathered(&e, &sum, true);
+        }
+        double expected = 2.0 * (0.25 - pow(0.5, LEFT[k] + 1)) / 0.5;
+        assert_mean(&sum, expected, 1e-3);
+    }
+    eye_reset(&e);
+}
+
+/* Returns what bounces from a white end with weight rho / pi bring until they end. */
+static double bounce_on(eye *e, vec3 position, int scatterings_left, uint32_t number)
+{
+    gather_end end = {{position, {0.0f, 0.0f, 1.0f}, 1e-4f}, SCENE_NO_MEDIUM, scatterings_left};
+    rgb weight = rgb_gray(0.5f * AG_INV_PI), known = rgb_gray(0.0f);
+    for (uint64_t bounce = 0;
+         gather_path_bounce(&e->t, e->worker, rng_make(1, bounce, number), 1.0f, &end, &weight, &known); bounce++) {
+    }
+    return (double)known.g;
+}
+
+/* Likewise where no estimate holds: a sphere that shines, and a floor under a sky, from which every bounce escapes. */
+static void bounces_where_no_estimate_holds(void **state)
+{
+    (void)state;
+    static const int LEFT[] = {1, 2, 3, 100};
+    eye sphere, floor;
+    eye_init_with_photons(&sphere,
+                          "AreaLightSource \"diffuse\" \"rgb L\" [2 2 2] Material \"diffuse\" \"rgb reflectance\""
+                          " [0.5 0.5 0.5] ReverseOrientation Shape \"sphere\" \"float radius\" 1",
+                          NEAREST, NEAREST);
+    eye_init_with_photons(&floor, "Shape \"disk\" \"float radius\" 9 LightSource \"infinite\" \"rgb L\" [2 2 2]",
+                          NEAREST, NEAREST);
+    for (size_t k = 0; k < sizeof LEFT / sizeof *LEFT; k++) {
+        mean_sum in_sphere = {0}, on_floor = {0};
+        for (uint32_t i = 0; i < GATHERS * RAYS; i++) {
+            mean_add(&in_sphere, bounce_on(&sphere, (vec3){0.0f, 0.0f, -0.999f}, LEFT[k], i));
+            mean_add(&on_floor, bounce_on(&floor, (vec3){0.0f, 0.0f, 0.0f}, LEFT[k], i));
+        }
+        assert_mean(&in_sphere, 2.0 * (0.5 - pow(0.5, LEFT[k] + 1)) / 0.5, 1e-3);
+        assert_mean(&on_floor, 2.0 * 0.5, 1e-3);
+    }
+    eye_reset(&sphere);
+    eye_reset(&floor);
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(plate_under_a_dome), cmocka_unit_test(wall_of_a_sphere),
+    const struct CMUnitTest tests[] = {cmocka_unit_test(plate_under_a_dome),
+                                       cmocka_unit_test(wall_of_a_sphere),
                                        cmocka_unit_test(wall_in_a_mirror),
-                                       cmocka_unit_test(ray_asks_both_sides_of_a_cloth)};
+                                       cmocka_unit_test(ray_asks_both_sides_of_a_cloth),
+                                       cmocka_unit_test(bounces_in_a_shining_sphere),
+                                       cmocka_unit_test(bounces_where_no_estimate_holds)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

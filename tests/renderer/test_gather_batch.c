@@ -116,7 +116,7 @@ static void one_end_of_two(void **state)
 }
 
 /* The light of one gather among others, where the batch is resolved after this many of its rays. Every eighth ray
- * brings light of its own alone. */
+ * brings light of its own alone, and every eighth has two ends. */
 static gathered_light resolved_after(uint32_t rays)
 {
     gather_batch *b = batch_create(INFINITY);
@@ -132,6 +132,10 @@ static gathered_light resolved_after(uint32_t rays)
             if (i % 8 == 7) {
                 known += cosine_of(i);
                 gather_batch_note(b, cosine_of(i));
+            } else if (i % 8 == 3) {
+                gather_ends ends = {.count = 2, .end = {end_of(i), end_of(i)}};
+                ends.weight[0] = ends.weight[1] = rgb_gray(0.5f);
+                gather_batch_ask_all(b, &ends, i, 0.0f);
             } else {
                 ask(b, i);
             }
