@@ -11,6 +11,7 @@
 #include "material/material_table.h"
 #include "material/pane.h"
 #include "rays/bvh.h"
+#include "rays/glued_faces.h"
 #include "rays/slab_faces.h"
 #include "scene_extent.h"
 #include "scene_names.h"
@@ -440,6 +441,8 @@ ag_status scene_commit(scene *s, run_context *run, const char *isa)
     status = material_mips_make(s, run);
     if (status == AG_OK)
         status = light_pick_commit(s, run->log);
+    if (status == AG_OK)
+        status = glued_faces_find(s, run);
     if (status == AG_OK)
         status = slab_faces_find(s, run, &s->slab_faces);
     s->has_panes = s->has_panes || s->slab_faces;

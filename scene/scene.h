@@ -88,6 +88,7 @@ typedef struct scene {
     bool filters_textures;     /* any of them: see material_mips.h */
     bool has_scattering_media; /* eye, lamps or shapes are in media that scatter: see transmittance_travel */
     bool has_interfaces;       /* any shape that rays may pass unbent: see transmittance.h */
+    bool has_glued_faces;      /* any shape that is_glued: see glued_faces.h */
     bool has_panes;            /* any shape that lets light straight through: see pane.h, slab_faces.h */
     /* Data for picking lights: see light_pick.c. */
     uint32_t lit_count;          /* lights with power */

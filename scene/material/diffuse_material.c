@@ -45,6 +45,12 @@ static bool both_have_base(const scene *s, const material *m)
            !rgb_is_black(m->transmittance) || m->transmittance_texture != SCENE_NO_TEXTURE;
 }
 
+static bool both_transmit(const scene *s, const material *m)
+{
+    (void)s;
+    return !rgb_is_black(m->transmittance) || m->transmittance_texture != SCENE_NO_TEXTURE;
+}
+
 static float bound_of_color(const scene *s, rgb color, uint32_t texture_index)
 {
     return texture_index == SCENE_NO_TEXTURE ? rgb_max(color) : s->textures.items[texture_index].most;
@@ -79,6 +85,7 @@ static void add_both_lobes(bsdf *b, const surface_hit *hit)
 }
 
 const material_type diffuse_transmission_material = {.init = init_both,
+                                                     .transmits = both_transmit,
                                                      .has_base = both_have_base,
                                                      .is_filtered = both_are_filtered,
                                                      .init_point = init_point,

@@ -55,6 +55,8 @@ static void add_lobes(bsdf *b, const surface_hit *hit)
 
 const material_type dielectric_material = {.is_traced = material_always,
                                            .is_clear_glass = is_clear,
+                                           .transmits = material_always,
+                                           .is_transparent = material_always,
                                            .may_be_pane = may_be_pane,
                                            .may_be_slab = material_always,
                                            .init_point = init_point,
@@ -88,6 +90,8 @@ static void add_thin_lobes(bsdf *b, const surface_hit *hit)
 
 const material_type thin_dielectric_material = {.is_traced = material_always,
                                                 .is_clear_glass = material_always,
+                                                .transmits = material_always,
+                                                .is_transparent = material_always,
                                                 .may_be_pane = material_always,
                                                 .init_point = init_point,
                                                 .look_up = look_up,

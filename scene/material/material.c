@@ -67,6 +67,24 @@ bool material_is_clear_glass(const scene *s, uint32_t material_index)
     return type->is_clear_glass && type->is_clear_glass(s, m);
 }
 
+bool material_transmits(const scene *s, uint32_t material_index)
+{
+    const material *m = &s->materials[material_index];
+    if (m->kind == MATERIAL_MIX)
+        return material_transmits(s, m->mixed[0]) || material_transmits(s, m->mixed[1]);
+    const material_type *type = material_type_of(m->kind);
+    return m->kind == MATERIAL_INTERFACE || (type->transmits && type->transmits(s, m));
+}
+
+bool material_is_transparent(const scene *s, uint32_t material_index)
+{
+    const material *m = &s->materials[material_index];
+    if (m->kind == MATERIAL_MIX)
+        return material_is_transparent(s, m->mixed[0]) && material_is_transparent(s, m->mixed[1]);
+    const material_type *type = material_type_of(m->kind);
+    return m->kind == MATERIAL_INTERFACE || (type->is_transparent && type->is_transparent(s, m));
+}
+
 /* A mix picks one of its two by position alone, as pbrt-v4 does: the same for all rays, so photons and eye agree. */
 const material *material_resolve_mix(const scene *s, const material *m, const surface_hit *hit)
 {

@@ -64,6 +64,13 @@ bool material_is_traced(const struct scene *s, uint32_t material_index);
  * path only. */
 bool material_is_clear_glass(const struct scene *s, uint32_t material_index);
 
+/* Returns whether the material, or one that it mixes, lets light through to the other side anywhere. */
+bool material_transmits(const struct scene *s, uint32_t material_index);
+
+/* Returns whether it lets through, all over, most of what it does not reflect, as glass and interfaces do: it has no
+ * colour of its own to speak of. A mix does where both of its materials do. */
+bool material_is_transparent(const struct scene *s, uint32_t material_index);
+
 /* Returns whether rays pass straight at a hit, as through an interface. */
 bool material_is_interface(const struct scene *s, const struct surface_hit *hit);
 

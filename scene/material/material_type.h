@@ -39,6 +39,8 @@ typedef struct material_type {
     /* Predicates; NULL: never true. */
     material_predicate *is_traced;      /* material_is_traced */
     material_predicate *is_clear_glass; /* material_is_clear_glass */
+    material_predicate *transmits;      /* material_transmits; interfaces do without it */
+    material_predicate *is_transparent; /* material_is_transparent, likewise */
     material_predicate *has_base;       /* it has a diffuse base anywhere */
     material_predicate *may_be_pane;    /* pane_may_be_of */
     material_predicate *may_be_slab;    /* slab_may_be_of, of a smooth one without textures whose ior is not 1 */

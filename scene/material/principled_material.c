@@ -19,6 +19,23 @@ static bool is_clear_glass(const scene *s, const material *m)
     return material_is_smooth(m->alpha_u, m->alpha_v) && principled_transmits(&p);
 }
 
+static bool transmits(const scene *s, const material *m)
+{
+    principled_point p = principled_point_of(m);
+    (void)s;
+    return principled_transmits(&p);
+}
+
+/* A thin wall tints what passes it: it is a coloured sheet, unless it is nearly white. */
+static bool is_transparent(const scene *s, const material *m)
+{
+    const rgb c = m->reflectance;
+    const bool is_white = m->reflectance_texture == SCENE_NO_TEXTURE && fminf(c.r, fminf(c.g, c.b)) >= 0.9f;
+    const bool is_uniform =
+        m->transmission_texture == SCENE_NO_TEXTURE && (m->metallic == 0.0f || m->metallic_texture == SCENE_NO_TEXTURE);
+    return transmits(s, m) && is_uniform && (1.0f - m->metallic) * m->transmission >= 0.5f && (!m->is_thin || is_white);
+}
+
 static bool has_base(const scene *s, const material *m)
 {
     (void)s;
@@ -144,6 +161,8 @@ const material_type principled_material = {.init = init,
                                            .prepare = principled_prepare,
                                            .is_traced = is_traced,
                                            .is_clear_glass = is_clear_glass,
+                                           .transmits = transmits,
+                                           .is_transparent = is_transparent,
                                            .has_base = has_base,
                                            .may_be_pane = may_be_pane,
                                            .may_be_slab = may_be_slab,

@@ -142,7 +142,7 @@ static bvh_tree *new_tree(const bvh *b, uint32_t shape_count)
         return NULL;
     t->holder_count = 1;
     t->scene = rtcNewScene(b->device->embree);
-    rtcSetSceneFlags(t->scene, RTC_SCENE_FLAG_ROBUST);
+    rtcSetSceneFlags(t->scene, EMBREE_SCENE_FLAGS);
     rtcSetSceneBuildQuality(t->scene, RTC_BUILD_QUALITY_MEDIUM);
     return t;
 }

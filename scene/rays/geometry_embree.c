@@ -39,15 +39,28 @@ static vec3 lane_vec3(void *first, lane l, unsigned number)
     return (vec3){*lane_float(first, l, number), *lane_float(first, l, number + 1), *lane_float(first, l, number + 2)};
 }
 
+static ray_alpha_rule alpha_rule_of(uint32_t ray_id)
+{
+    return (ray_alpha_rule)(ray_id & ((1u << EMBREE_ROLES_SHIFT) - 1));
+}
+
+static bool is_sought(const shape *s, uint32_t ray_id)
+{
+    const uint32_t roles = ray_id >> EMBREE_ROLES_SHIFT;
+    return roles == 0 || (roles & s->role) != 0;
+}
+
 static bool quadric_hit(const void *user, void *ray, lane l, float *out_t)
 {
     const embree_user *a = user;
     vec3 origin = lane_vec3(ray, l, RAY_ORIGIN), direction = lane_vec3(ray, l, RAY_DIRECTION);
     float from = *lane_float(ray, l, RAY_NEAR), to = *lane_float(ray, l, RAY_FAR);
+    if (!is_sought(a->shape, *lane_uint(ray, l, RAY_ID)))
+        return false;
     for (uint32_t crossing = 0; shape_intersect_quadric(a->shape, origin, direction, from, to, out_t); crossing++) {
         if (shape_is_opaque(a->shape) ||
             alpha_stops_ray(a->s, a->shape, 0, 0.0f, 0.0f, crossing, origin, direction, *lane_float(ray, l, RAY_TIME),
-                            *out_t, (ray_alpha_rule)*lane_uint(ray, l, RAY_ID)))
+                            *out_t, alpha_rule_of(*lane_uint(ray, l, RAY_ID))))
             return true;
         from = *out_t;
     }
@@ -104,12 +117,20 @@ static void filter_hit(const struct RTCFilterFunctionNArguments *arguments)
                             vec3_dot(lane_vec3(hit, l, HIT_NORMAL), direction) > 0.0f;
         if (!alpha_stops_ray(a->s, a->shape, *lane_uint(hit, l, HIT_PRIMITIVE), *lane_float(hit, l, HIT_U),
                              *lane_float(hit, l, HIT_V), crossing, origin, direction, *lane_float(ray, l, RAY_TIME),
-                             *lane_float(ray, l, RAY_FAR), (ray_alpha_rule)*lane_uint(ray, l, RAY_ID)))
+                             *lane_float(ray, l, RAY_FAR), alpha_rule_of(*lane_uint(ray, l, RAY_ID))))
             arguments->valid[l.at] = 0;
     }
 }
 
 /* --- all kinds --- */
+
+void embree_filter_by_role(const struct RTCFilterFunctionNArguments *arguments)
+{
+    const embree_user *a = arguments->geometryUserPtr;
+    for (lane l = {arguments->N, 0}; l.at < l.stride; l.at++)
+        if (arguments->valid[l.at] && !is_sought(a->shape, *lane_uint(arguments->ray, l, RAY_ID)))
+            arguments->valid[l.at] = 0;
+}
 
 static RTCGeometry make_curves(RTCDevice device, const shape *s)
 {

@@ -20,6 +20,12 @@ extern char embree_threads;
  * while the geometry lives. Returns false when out of memory. */
 bool embree_attach_shape(RTCDevice device, RTCScene into, embree_user *user, uint32_t index);
 
+/* A ray's id is its ray_alpha_rule and, this many bits up, the roles of the shapes that it looks for; 0: all. */
+enum { EMBREE_ROLES_SHIFT = 2 };
+
+/* Embree's filter for rays that look for shapes of some roles. */
+void embree_filter_by_role(const struct RTCFilterFunctionNArguments *arguments);
+
 /* Returns whether Embree knows the shape as a sphere of its own. */
 bool embree_has_as_sphere(const shape *s);
 

@@ -9,6 +9,10 @@
  * A ray with components that are not finite, or not below 1.8e18, meets nothing. */
 bool scene_intersect(const scene *s, scene_ray ray, float max_distance, surface_hit *out_hit);
 
+/* Finds the nearest surface of a shape of these roles (of shape_role), between two distances along the ray. Glass does
+ * not count for an opaque face that it lies on. */
+bool scene_intersect_role(const scene *s, scene_ray ray, float from, float to, unsigned roles, surface_hit *out_hit);
+
 /* Rays of unit direction from one point, cast together: those of similar directions traverse the scene's tree as
  * packets. The grouping depends on the rays alone. */
 enum { RAY_FAN_MAX = 64 };

@@ -2,6 +2,8 @@
  * *_embree.c know Embree. Rests on: Wald et al., "Embree: A Kernel Framework for Efficient
  * CPU Ray Tracing", 2014. Flow: bvh_embree -> [here] -> transmittance. Threads: rays may be cast from any. */
 #include "rays/bvh_embree.h"
+#include "rays/geometry_embree.h"
+#include "rays/glued_faces.h"
 #include "rays/rays.h"
 
 static struct RTCRay embree_ray(const scene_ray *r, float max_distance)
@@ -71,6 +73,13 @@ static bool can_be_cast(const scene_ray *r, float max_distance)
     return is_in_reach(r->origin) && is_in_reach(r->direction) && max_distance >= 0.0f;
 }
 
+static ray_meeting meeting_of(const struct RTCRayHit *ray_hit)
+{
+    const struct RTCHit *h = &ray_hit->hit;
+    bool is_met = h->geomID != RTC_INVALID_GEOMETRY_ID;
+    return (ray_meeting){is_met ? ray_hit->ray.tfar : INFINITY, h->u, h->v, h->geomID, h->primID, h->instID[0]};
+}
+
 static void cast_one(const scene *s, const scene_ray *ray, float max_distance, ray_meeting *out_met)
 {
     struct RTCRayHit ray_hit;
@@ -78,9 +87,55 @@ static void cast_one(const scene *s, const scene_ray *ray, float max_distance, r
     ray_hit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     ray_hit.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
     embree_intersect(s->bvh->scene, &ray_hit);
-    const struct RTCHit *h = &ray_hit.hit;
-    bool is_met = h->geomID != RTC_INVALID_GEOMETRY_ID;
-    *out_met = (ray_meeting){is_met ? ray_hit.ray.tfar : INFINITY, h->u, h->v, h->geomID, h->primID, h->instID[0]};
+    *out_met = meeting_of(&ray_hit);
+}
+
+/* scene_intersect_role, without evaluating the hit. */
+static bool cast_by_role(const scene *s, const scene_ray *ray, float from, float to, unsigned roles,
+                         ray_meeting *out_met)
+{
+    struct RTCRayHit ray_hit;
+    ray_hit.ray = embree_ray(ray, to);
+    ray_hit.ray.tnear = from;
+    ray_hit.ray.id |= roles << EMBREE_ROLES_SHIFT;
+    ray_hit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    ray_hit.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+    embree_intersect_filtered(s->bvh->scene, &ray_hit, embree_filter_by_role);
+    *out_met = meeting_of(&ray_hit);
+    return out_met->geometry != RTC_INVALID_GEOMETRY_ID;
+}
+
+bool scene_intersect_role(const scene *s, scene_ray ray, float from, float to, unsigned roles, surface_hit *out_hit)
+{
+    ray_meeting met;
+    if (!can_be_cast(&ray, to) || !cast_by_role(s, &ray, from, to, roles, &met))
+        return false;
+    fill_hit(s, &ray, &met, out_hit);
+    return true;
+}
+
+static const shape *shape_met(const scene *s, const ray_meeting *met)
+{
+    if (met->instance == RTC_INVALID_GEOMETRY_ID)
+        return &s->shapes[met->geometry];
+    const scene_object *o = &s->objects[s->instances[met->instance - s->shape_count].object_index];
+    return &s->shapes[s->object_shapes[o->first_shape + met->geometry]];
+}
+
+/* Puts the opaque face that glass is glued to in the place of the glass that was met; else leaves *in_out_met alone. */
+static void meet_glued(const scene *s, const scene_ray *ray, ray_meeting *in_out_met)
+{
+    surface_hit glass, face;
+    ray_meeting behind;
+    if (in_out_met->geometry == RTC_INVALID_GEOMETRY_ID || !shape_met(s, in_out_met)->is_glued)
+        return;
+    fill_hit(s, ray, in_out_met, &glass);
+    const float window = glued_faces_window(&glass, ray->direction), t = in_out_met->distance;
+    if (!cast_by_role(s, ray, fmaxf(t - window, 0.0f), t + window, SHAPE_IS_OPAQUE, &behind))
+        return;
+    fill_hit(s, ray, &behind, &face);
+    if (glued_faces_touch(&glass, &face))
+        *in_out_met = behind;
 }
 
 bool scene_intersect(const scene *s, scene_ray ray, float max_distance, surface_hit *out_hit)
@@ -89,7 +144,9 @@ bool scene_intersect(const scene *s, scene_ray ray, float max_distance, surface_
     if (!can_be_cast(&ray, max_distance))
         return false;
     cast_one(s, &ray, max_distance, &met);
-    if (met.geometry == RTC_INVALID_GEOMETRY_ID)
+    if (s->has_glued_faces)
+        meet_glued(s, &ray, &met);
+    if (met.geometry == RTC_INVALID_GEOMETRY_ID || met.distance > max_distance)
         return false;
     fill_hit(s, &ray, &met, out_hit);
     return true;
@@ -166,14 +223,9 @@ static scene_ray ray_of(const ray_fan *f, uint32_t i)
     return ray;
 }
 
-void scene_intersect_fan(const scene *s, ray_fan *f)
+static void cast_fan(const scene *s, ray_fan *f)
 {
     uint8_t order[RAY_FAN_MAX];
-    if (!is_in_reach(f->common.origin)) {
-        for (uint32_t i = 0; i < f->count; i++)
-            f->met[i].distance = INFINITY;
-        return;
-    }
     if (f->count <= SINGLES_MAX) {
         for (uint32_t i = 0; i < f->count; i++) {
             scene_ray ray = ray_of(f, i);
@@ -187,6 +239,21 @@ void scene_intersect_fan(const scene *s, ray_fan *f)
     put_in_order(f, order);
     for (uint32_t i = 0; i < f->count; i += PACKET)
         cast_packet(s, f, order + i, f->count - i < PACKET ? f->count - i : PACKET);
+}
+
+void scene_intersect_fan(const scene *s, ray_fan *f)
+{
+    if (!is_in_reach(f->common.origin)) {
+        for (uint32_t i = 0; i < f->count; i++)
+            f->met[i].distance = INFINITY;
+        return;
+    }
+    cast_fan(s, f);
+    for (uint32_t i = 0; s->has_glued_faces && i < f->count; i++)
+        if (!isinf(f->met[i].distance)) {
+            scene_ray ray = ray_of(f, i);
+            meet_glued(s, &ray, &f->met[i]);
+        }
 }
 
 void ray_fan_hit(const scene *s, const ray_fan *f, uint32_t i, surface_hit *out_hit)

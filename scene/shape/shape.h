@@ -89,6 +89,14 @@ typedef struct curves {
     uint32_t *holder_count; /* as a mesh's; no more segments can then be added */
 } curves;
 
+/* What a shape does with light, where its face lies on another's (rays/glued_faces.h). Bits, so that rays can look for
+ * several. */
+typedef enum shape_role {
+    SHAPE_IS_OPAQUE = 1,      /* no light passes it, or it shines */
+    SHAPE_IS_TRANSPARENT = 2, /* glass, thin or not, and interfaces */
+    SHAPE_IS_TRANSLUCENT = 4  /* light passes it, and it has a colour of its own: paper, leaves */
+} shape_role;
+
 typedef struct shape {
     shape_kind kind;
     bool flip_normal; /* ReverseOrientation, and for meshes also a transform that swaps handedness (not both) */
@@ -107,6 +115,9 @@ typedef struct shape {
         curves curves;
     } as;
     float area; /* m^2, world; set by scene_commit, unless it is known, above 0 */
+    /* set by scene_commit */
+    unsigned role; /* of shape_role; 0: none, of curves and of lamps of glass */
+    bool is_glued; /* transparent, and on an opaque face somewhere */
 } shape;
 
 /* Returns a shape with nothing in it yet: opaque, dark, of the scene's first material, in no medium. */

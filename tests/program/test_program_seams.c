@@ -170,6 +170,96 @@ static void test_fixtures(void **state)
     expect_same_light_by("a lamp in a can behind glass", &OF_FIXTURES, 0.0018, 0.008);
 }
 
+/* A plate of glass lies flush on the floor, smooth and rough, and a block of fog stands there: the floor counts, where
+ * both are met at once. */
+static void test_glued_glass(void **state)
+{
+    (void)state;
+    begin_room(0);
+    add_ceiling_lamp(0.0f);
+    add("Material \"dielectric\"\n");
+    add_box(at(-1, 0, -0.3f), at(1, 0.01f, 1.5f), 0);
+    expect_same_light("a plate on the floor", MOST_ERROR, 0.01);
+    begin_room(0);
+    add_ceiling_lamp(0.0f);
+    add("Material \"dielectric\" \"float roughness\" 0.3\n");
+    add_box(at(-1, 0, -0.3f), at(1, 0.01f, 1.5f), 0);
+    expect_same_light("a rough plate on the floor", MOST_ERROR, 0.01);
+    begin_room(0);
+    add_ceiling_lamp(0.0f);
+    add("MakeNamedMedium \"a\" \"string type\" \"homogeneous\" \"rgb sigma_s\" [0 0 0] \"rgb sigma_a\" [1 2 3]\n"
+        "AttributeBegin MediumInterface \"a\" \"\" Material \"interface\"\n");
+    add_box(at(-1, 0, -0.3f), at(1, 0.5f, 1.5f), 0);
+    add("AttributeEnd\n");
+    expect_same_light("a block of fog on the floor", MOST_ERROR, 0.006);
+}
+
+/* A thin pane that lies flush on the floor does nothing: the floor's light is that without it. */
+static void test_glued_pane(void **state)
+{
+    (void)state;
+    char scene[256];
+    for (int k = 0; k < 2; k++) {
+        const char *const *arguments =
+            k == 0 ? ARGUMENTS("--integrator=path", PLAIN.path_samples)
+                   : ARGUMENTS(AGREEMENT_MAP, PLAIN.photons, PLAIN.samples, PLAIN.gather_samples);
+        begin_room(0);
+        add_ceiling_lamp(0.0f);
+        snprintf(scene, sizeof scene, "%s", write_text("bare.pbrt", text));
+        agreement_means bare = agreement_render(scene, arguments);
+        add(THIN);
+        add_face(at(-1, 0, -0.3f), at(0, 0, 1.8f), at(2, 0, 0));
+        snprintf(scene, sizeof scene, "%s", write_text("pane.pbrt", text));
+        agreement_means covered = agreement_render(scene, arguments);
+        expect_agreement("a thin pane on the floor", &covered, &bare,
+                         (agreement_bounds){k * AGREEMENT_BLUR, MOST_ERROR, 0.006});
+    }
+}
+
+/* The reflectance of a smooth face of glass of index 1.5 for unpolarised light. */
+static double fresnel(double cosine)
+{
+    const double index = 1.5, within = sqrt(1.0 - (1.0 - cosine * cosine) / (index * index));
+    const double s = (cosine - index * within) / (cosine + index * within);
+    const double p = (index * cosine - within) / (index * cosine + within);
+    return 0.5 * (s * s + p * p);
+}
+
+/* A wide plate of glass is glued to a wide matte floor under an even sky of radiance 1. Of the sky's light a part Fe is
+ * reflected by the glass (Fresnel, over the half space), and the rest goes to and fro between the floor, of reflectance
+ * r, and the glass, which reflects Fi = 1 - (1 - Fe) / n^2 of diffuse light from within: the radiance at a cosine is
+ * F + (1 - F) r (1 - Fe) / (n^2 (1 - r Fi)). Rests on: Saunderson, "Calculation of the Color of Pigmented Plastics",
+ * 1942. With a gap between them the plate would be lighter: light that leaves the floor would be refracted into it, and
+ * none be trapped. */
+static void test_paint_under_glass(void **state)
+{
+    (void)state;
+    enum { STEPS = 10000 };
+    const double r[3] = {0.8, 0.5, 0.2}, index = 1.5;
+    double external = 0.0, radiance[3];
+    for (int i = 0; i < STEPS; i++) {
+        double cosine = (i + 0.5) / STEPS;
+        external += 2.0 * cosine * fresnel(cosine) / STEPS;
+    }
+    const double internal = 1.0 - (1.0 - external) / (index * index), cosine = 0.8;
+    for (int c = 0; c < 3; c++)
+        radiance[c] = fresnel(cosine) +
+                      (1.0 - fresnel(cosine)) * r[c] * (1.0 - external) / (index * index * (1.0 - r[c] * internal));
+    agreement_means truth = agreement_uniform(radiance[0], radiance[1], radiance[2]);
+    text[0] = '\0';
+    add("LookAt 0 0.8 -0.6 0 0 0 0 1 0 Camera \"perspective\" \"float fov\" 4\nWorldBegin\n"
+        "LightSource \"infinite\" \"rgb L\" [1 1 1]\nMaterial \"diffuse\" \"rgb reflectance\" [0.8 0.5 0.2]\n");
+    add_face(at(-0.2f, 0, -0.2f), at(0, 0, 0.4f), at(0.4f, 0, 0));
+    add("Material \"dielectric\"\n");
+    add_box(at(-0.2f, 0, -0.2f), at(0.2f, 0.002f, 0.2f), 0);
+    char scene[256];
+    snprintf(scene, sizeof scene, "%s", write_text("paint.pbrt", text));
+    agreement_means path = agreement_render(scene, ARGUMENTS("--integrator=path", "--spp=64"));
+    expect_agreement("paint under glass, path tracing", &path, &truth, (agreement_bounds){0.001, 0.01, 0.03});
+    agreement_means map = agreement_render(scene, ARGUMENTS("--photons=5e4", "--caustic-photons=2e5", "--spp=8"));
+    expect_agreement("paint under glass, photon map", &map, &truth, (agreement_bounds){AGREEMENT_BLUR, 0.02, 0.06});
+}
+
 /* Walls with a steep relief, plain, coated, and letting light through: photons leave as light comes to the eye. */
 static void test_steep_reliefs(void **state)
 {
@@ -202,6 +292,9 @@ int main(void)
         TEST_IN_FOLDER(test_flipped),
         TEST_IN_FOLDER(test_panes_within_panes),
         TEST_IN_FOLDER(test_fixtures),
+        TEST_IN_FOLDER(test_glued_glass),
+        TEST_IN_FOLDER(test_glued_pane),
+        TEST_IN_FOLDER(test_paint_under_glass),
         TEST_IN_FOLDER(test_steep_reliefs),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -4,15 +4,16 @@
 
 enum { SAMPLES = 60000 / FEWER };
 
-static const char MIXES[] = "MakeNamedMaterial \"white\" \"string type\" \"diffuse\" \"rgb reflectance\" [ 1 1 1 ]\n"
-                            "MakeNamedMaterial \"glass\" \"string type\" \"dielectric\"\n"
-                            "MakeNamedMaterial \"metal\" \"string type\" \"conductor\" \"float roughness\" 0.1\n"
-                            "MakeNamedMaterial \"two\" \"string type\" \"mix\" \"float amount\" %s\n"
-                            "\"string materials\" [ \"white\" \"glass\" ]\n"
-                            "MakeNamedMaterial \"three\" \"string type\" \"mix\" \"float amount\" 0.4\n"
-                            "\"string materials\" [ \"two\" \"metal\" ]\n"
-                            "NamedMaterial \"two\" Shape \"sphere\" NamedMaterial \"three\" Shape \"sphere\"\n"
-                            "NamedMaterial \"white\" Shape \"sphere\"";
+static const char MIXES[] =
+    "MakeNamedMaterial \"white\" \"string type\" \"diffuse\" \"rgb reflectance\" [ 1 1 1 ]\n"
+    "MakeNamedMaterial \"glass\" \"string type\" \"dielectric\"\n"
+    "MakeNamedMaterial \"metal\" \"string type\" \"conductor\" \"float roughness\" 0.1\n"
+    "MakeNamedMaterial \"two\" \"string type\" \"mix\" \"float amount\" %s\n"
+    "\"string materials\" [ \"white\" \"glass\" ]\n"
+    "MakeNamedMaterial \"three\" \"string type\" \"mix\" \"float amount\" 0.4\n"
+    "\"string materials\" [ \"two\" \"metal\" ]\n"
+    "NamedMaterial \"two\" Shape \"sphere\" Translate 3 0 0 NamedMaterial \"three\" Shape \"sphere\"\n"
+    "Translate 3 0 0 NamedMaterial \"white\" Shape \"sphere\"";
 
 static scene *mixes_create(test_run *run, const char *amount)
 {
