@@ -186,6 +186,8 @@ hash128 scene_hash_of_light(const scene *s)
     ADD(s->has_motion);          /* photons then have times, by a random number */
     if (s->has_scattering_media) /* also where only the eye is in one: photons then draw numbers for their flights */
         ADD(s->has_scattering_media);
+    if (s->has_glued_faces) /* maps of before there was a rule for these do not fit */
+        hash128_add_text(h, "glued");
     return begun;
 }
 
@@ -203,6 +205,10 @@ hash128 scene_hash_of_form(const scene *s, uint32_t shape_index)
     if (!s->has_interfaces)
         item.material_index = 0;
     add_shape(h, &item);
+    if (s->has_glued_faces) { /* which of two faces is met follows from both */
+        ADD(item.role);
+        ADD(item.is_glued);
+    }
     return begun;
 }
 
@@ -220,6 +226,8 @@ hash128 scene_hash_of_passed_surfaces(const scene *s)
         add_texture(h, &s->textures.items[i]);
     for (uint32_t i = 0; s->has_interfaces && i < s->material_count; i++)
         add_material(h, &s->materials[i]);
+    if (s->has_glued_faces)
+        hash128_add_text(h, "glued");
     return begun;
 }
 
