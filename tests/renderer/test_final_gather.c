@@ -195,7 +195,8 @@ static double bounce_on(eye *e, vec3 position, int scatterings_left, uint32_t nu
     return (double)known.g;
 }
 
-/* Likewise where no estimate holds: a sphere that shines, and a floor under a sky, from which every bounce escapes. */
+/* Bounces from places where no estimate holds: in a sphere that shines, and on a floor under a sky, from which every
+ * bounce escapes. */
 static void bounces_where_no_estimate_holds(void **state)
 {
     (void)state;
