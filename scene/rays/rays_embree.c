@@ -73,6 +73,16 @@ static bool can_be_cast(const scene_ray *r, float max_distance)
     return is_in_reach(r->origin) && is_in_reach(r->direction) && max_distance >= 0.0f;
 }
 
+/* Returns a ray to cast, which has met nothing yet. */
+static struct RTCRayHit ray_hit_of(const scene_ray *ray, float max_distance)
+{
+    struct RTCRayHit r;
+    r.ray = embree_ray(ray, max_distance);
+    r.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    r.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+    return r;
+}
+
 static ray_meeting meeting_of(const struct RTCRayHit *ray_hit)
 {
     const struct RTCHit *h = &ray_hit->hit;
@@ -82,10 +92,7 @@ static ray_meeting meeting_of(const struct RTCRayHit *ray_hit)
 
 static void cast_one(const scene *s, const scene_ray *ray, float max_distance, ray_meeting *out_met)
 {
-    struct RTCRayHit ray_hit;
-    ray_hit.ray = embree_ray(ray, max_distance);
-    ray_hit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-    ray_hit.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+    struct RTCRayHit ray_hit = ray_hit_of(ray, max_distance);
     embree_intersect(s->bvh->scene, &ray_hit);
     *out_met = meeting_of(&ray_hit);
 }
@@ -94,12 +101,9 @@ static void cast_one(const scene *s, const scene_ray *ray, float max_distance, r
 static bool cast_by_role(const scene *s, const scene_ray *ray, float from, float to, unsigned roles,
                          ray_meeting *out_met)
 {
-    struct RTCRayHit ray_hit;
-    ray_hit.ray = embree_ray(ray, to);
+    struct RTCRayHit ray_hit = ray_hit_of(ray, to);
     ray_hit.ray.tnear = from;
     ray_hit.ray.id |= roles << EMBREE_ROLES_SHIFT;
-    ray_hit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-    ray_hit.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
     embree_intersect_filtered(s->bvh->scene, &ray_hit, embree_filter_by_role);
     *out_met = meeting_of(&ray_hit);
     return out_met->geometry != RTC_INVALID_GEOMETRY_ID;

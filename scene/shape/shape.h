@@ -89,8 +89,8 @@ typedef struct curves {
     uint32_t *holder_count; /* as a mesh's; no more segments can then be added */
 } curves;
 
-/* What a shape does with light, where its face lies on another's (rays/glued_faces.h). Bits, so that rays can look for
- * several. */
+/* The kinds of shapes by what they do with light. They decide which of two faces counts where these lie on each other
+ * (rays/glued_faces.h). They are bits, so that rays can look for several. */
 typedef enum shape_role {
     SHAPE_IS_OPAQUE = 1,      /* no light passes it, or it shines */
     SHAPE_IS_TRANSPARENT = 2, /* glass, thin or not, and interfaces */

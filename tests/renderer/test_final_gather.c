@@ -13,6 +13,7 @@ enum { PHOTONS = 200000 / FEWER, NEAREST = 50, GATHERS = 400, RAYS = 64, SAMPLES
 
 #define DOME                                                                                                           \
     "Material \"diffuse\" \"rgb reflectance\" [0.5 0.5 0.5] ReverseOrientation Shape \"sphere\" \"float radius\" 1 "
+#define SHINING_DOME "AreaLightSource \"diffuse\" \"rgb L\" [2 2 2] " DOME
 #define PLATE                                                                                                          \
     "Material \"diffuse\" \"rgb reflectance\" [0.8 0.8 0.8] ReverseOrientation Shape \"disk\" \"float radius\" 0.05 "
 
@@ -158,10 +159,7 @@ static void bounces_in_a_shining_sphere(void **state)
     (void)state;
     static const int LEFT[] = {2, 3, 100};
     eye e;
-    eye_init_with_photons(&e,
-                          "AreaLightSource \"diffuse\" \"rgb L\" [2 2 2] Material \"diffuse\" \"rgb reflectance\""
-                          " [0.5 0.5 0.5] ReverseOrientation Shape \"sphere\" \"float radius\" 1",
-                          NEAREST, NEAREST);
+    eye_init_with_photons(&e, SHINING_DOME, NEAREST, NEAREST);
     e.t.gather_min_distance = INFINITY;
     vertex v = eye_meet(&e, (vec3){0.2f, 0.0f, 0.0f}, (vec3){0.0f, 0.0f, -1.0f});
     for (size_t k = 0; k < sizeof LEFT / sizeof *LEFT; k++) {
@@ -202,10 +200,7 @@ static void bounces_where_no_estimate_holds(void **state)
     (void)state;
     static const int LEFT[] = {1, 2, 3, 100};
     eye sphere, floor;
-    eye_init_with_photons(&sphere,
-                          "AreaLightSource \"diffuse\" \"rgb L\" [2 2 2] Material \"diffuse\" \"rgb reflectance\""
-                          " [0.5 0.5 0.5] ReverseOrientation Shape \"sphere\" \"float radius\" 1",
-                          NEAREST, NEAREST);
+    eye_init_with_photons(&sphere, SHINING_DOME, NEAREST, NEAREST);
     eye_init_with_photons(&floor, "Shape \"disk\" \"float radius\" 9 LightSource \"infinite\" \"rgb L\" [2 2 2]",
                           NEAREST, NEAREST);
     for (size_t k = 0; k < sizeof LEFT / sizeof *LEFT; k++) {

@@ -47,7 +47,7 @@ static void view_close(view *v)
     ag_context_destroy(v->context);
 }
 
-/* What was served: how many values, and the largest of them. */
+/* The number of values that were served, and the largest of them. */
 typedef struct served_values {
     uint64_t count;
     double largest;
@@ -70,7 +70,7 @@ static void serve_slots(const photon_map *map, served_values *served)
     }
 }
 
-/* What points receive that are drawn evenly from all surfaces. */
+/* Asks for the irradiance at points that are drawn evenly from all surfaces. */
 static void serve_points(const scene *s, photon_map *map, irradiance_cache_mode mode, served_values *served)
 {
     enum { POINTS = 200000 / FEWER };

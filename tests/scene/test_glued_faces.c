@@ -83,7 +83,7 @@ static void test_found(void **state)
             fail_msg("%s: %x is not %x", CASES[i].what, glued_of(CASES[i].text), CASES[i].glued);
 }
 
-/* What is translucent is named once, however much there is of it; and glass that shines is nothing of the kind. */
+/* One warning names translucent shapes, however many there are, and glass that shines is not glued. */
 static void test_translucent(void **state)
 {
     (void)state;
