@@ -10,7 +10,7 @@ clear_spaces *clear_spaces_create(const scene *s, const photon_block *blocks, ui
 {
     clear_spaces *c = calloc(1, (size_t)clear_spaces_bytes(block_count));
     if (c)
-        c->s = s, c->blocks = blocks, c->radius = radius;
+        c->s = s, c->blocks = blocks, c->radius = radius, c->count = (uint32_t)block_count;
     return c;
 }
 
@@ -18,11 +18,12 @@ const clear_space *clear_spaces_get(clear_spaces *spaces, uint32_t block, clear_
 {
     clear_spaces_entry *e = &spaces->entries[block];
     uint32_t first = block * PHOTON_BLOCK_LANES, expected = EMPTY;
-    if (load_acquire_u32(&e->state) == READY) /* pairs with the release below */
+    const bool is_there = block < spaces->count;
+    if (is_there && load_acquire_u32(&e->state) == READY) /* pairs with the release below */
         return &e->space;
     vec3 normal = direction_decode(photon_block_normal(spaces->blocks, first));
     clear_space_find(spaces->s, photon_block_position(spaces->blocks, first), normal, spaces->radius, spare);
-    if (cas_acquire_u32(&e->state, &expected, BUSY)) {
+    if (is_there && cas_acquire_u32(&e->state, &expected, BUSY)) {
         e->space = *spare;
         store_release_u32(&e->state, READY); /* pairs with the acquire above */
     }

@@ -19,6 +19,7 @@ typedef struct clear_spaces {
     const scene *s;             /* borrowed */
     const photon_block *blocks; /* borrowed, of the map */
     float radius;               /* largest radius of a space, scene units */
+    uint32_t count;             /* of the map's blocks */
     clear_spaces_entry entries[];
 } clear_spaces;
 
@@ -32,7 +33,8 @@ static inline uint64_t clear_spaces_bytes(uint64_t block_count)
  * releases them. */
 clear_spaces *clear_spaces_create(const scene *s, const photon_block *blocks, uint64_t block_count, float radius);
 
-/* Returns the space around a block's first photon: the stored one, or *spare, into which this call has written it. */
+/* Returns the space around a block's first photon: the stored one, or *spare, into which this call has written it. The
+ * block may be one that is not there, as a tree whose file was overwritten may have it. */
 const clear_space *clear_spaces_get(clear_spaces *spaces, uint32_t block, clear_space *spare);
 
 #endif

@@ -11,7 +11,7 @@ static uint32_t find_leaves(const photon_query *q, photon_subtree subtree, float
         uint32_t node = subtree.node;
         bool is_there = true; /* beyond a plane at infinity there is nothing */
         for (uint32_t level = levels; level-- > 0;) {
-            photon_tree_node n = q->tree->nodes[node];
+            photon_tree_node n = photon_tree_node_at(q->tree, node);
             uint32_t goes_right = leaf >> level & 1;
             if (goes_right != (q->position[n.axis] >= n.split)) {
                 offset = photon_lanes_replace(offset, q->at - photon_lanes_fill(n.split), n.axis);

@@ -95,6 +95,13 @@ static inline bool photon_disc_is_on_surface(const photon_disc *disc, vec3 offse
     return below > 0.0f && below * below * square <= lateral_squared * (vec3_dot(n, n) - square);
 }
 
+/* Adds to a sum of offsets, modulo 2^32: it overflows where photons move while they are read, which those in a file
+ * that is overwritten do. */
+static inline void photon_disc_add_offset(photon_disc_sums *sums, int axis, int32_t offset)
+{
+    sums->offset[axis] = (int32_t)((uint32_t)sums->offset[axis] + (uint32_t)offset);
+}
+
 /* Adds a photon to the sums. */
 static inline void photon_disc_add(const photon_disc *disc, uint32_t index, photon_disc_sums *sums)
 {
@@ -104,9 +111,9 @@ static inline void photon_disc_add(const photon_disc *disc, uint32_t index, phot
         sums->flux[c] += (int64_t)((uint64_t)(code >> (16 - 8 * c) & 255) << 32 >> below);
     vec3 offset = vec3_sub(photon_block_position(disc->blocks, index), disc->position);
     float scale = PHOTON_DISC_OFFSET_UNIT / disc->radius;
-    sums->offset[0] += (int32_t)(offset.x * scale);
-    sums->offset[1] += (int32_t)(offset.y * scale);
-    sums->offset[2] += (int32_t)(offset.z * scale);
+    photon_disc_add_offset(sums, 0, (int32_t)(offset.x * scale));
+    photon_disc_add_offset(sums, 1, (int32_t)(offset.y * scale));
+    photon_disc_add_offset(sums, 2, (int32_t)(offset.z * scale));
 }
 
 extern const disc_kernels disc_kernels_plain;

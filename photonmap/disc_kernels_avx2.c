@@ -297,9 +297,9 @@ AVX2 static inline void near_sums_flush(near_sums *s, bool has_offsets, photon_d
     sums->flux[1] += sum_of_near(s->green);
     sums->flux[2] += sum_of_near(s->blue);
     if (has_offsets) {
-        sums->offset[0] += (int32_t)sum_of_32(s->x);
-        sums->offset[1] += (int32_t)sum_of_32(s->y);
-        sums->offset[2] += (int32_t)sum_of_32(s->z);
+        photon_disc_add_offset(sums, 0, (int32_t)sum_of_32(s->x));
+        photon_disc_add_offset(sums, 1, (int32_t)sum_of_32(s->y));
+        photon_disc_add_offset(sums, 2, (int32_t)sum_of_32(s->z));
     }
     *s = near_sums_none();
 }

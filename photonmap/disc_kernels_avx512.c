@@ -245,6 +245,13 @@ AVX512 static inline int64_t sum_of_near(__m512i v)
     return _mm512_reduce_add_epi64(_mm512_add_epi64(low, high)) << (32 - NEAR_OCTAVES);
 }
 
+AVX512 static inline int32_t sum_of_offsets(__m512i v)
+{
+    __m512i low = _mm512_cvtepi32_epi64(_mm512_castsi512_si256(v)),
+            high = _mm512_cvtepi32_epi64(_mm512_extracti64x4_epi64(v, 1));
+    return (int32_t)_mm512_reduce_add_epi64(_mm512_add_epi64(low, high));
+}
+
 /* Adds the sums to all, and begins anew. */
 AVX512 static inline void near_sums_flush(near_sums *s, bool has_offsets, photon_disc_sums *sums)
 {
@@ -252,9 +259,9 @@ AVX512 static inline void near_sums_flush(near_sums *s, bool has_offsets, photon
     sums->flux[1] += sum_of_near(s->green);
     sums->flux[2] += sum_of_near(s->blue);
     if (has_offsets) {
-        sums->offset[0] += _mm512_reduce_add_epi32(s->x);
-        sums->offset[1] += _mm512_reduce_add_epi32(s->y);
-        sums->offset[2] += _mm512_reduce_add_epi32(s->z);
+        photon_disc_add_offset(sums, 0, sum_of_offsets(s->x));
+        photon_disc_add_offset(sums, 1, sum_of_offsets(s->y));
+        photon_disc_add_offset(sums, 2, sum_of_offsets(s->z));
     }
     *s = near_sums_none();
 }

@@ -254,10 +254,10 @@ bool incident_light_find(const incident_light *l, vec3 position, vec3 normal, in
 {
     if (!l->cells)
         return false;
-    const float at[3] = {position.x, position.y, position.z};
+    const float at[PHOTON_TREE_AXES] = {position.x, position.y, position.z};
     uint32_t base = (1u << l->cell_depth) - 1, node = 0, face = face_of(normal);
     while (node < base) {
-        photon_tree_node n = l->tree.nodes[node];
+        photon_tree_node n = photon_tree_node_at(&l->tree, node);
         node = 2 * node + 1 + (at[n.axis] >= n.split);
     }
     uint32_t entry = l->cells[node - base];

@@ -23,7 +23,7 @@ static const double CHANGES_MOST = 8.0;
 /* A search for photons of one position and normal. */
 typedef struct same_place {
     const photon_tree *tree;
-    float position[3];
+    float position[PHOTON_TREE_AXES];
     uint16_t normal;
     uint32_t leaves, waiting, nodes[PHOTON_TREE_DEPTH_MAX]; /* visited; other sides of planes that it lies on */
 } same_place;
@@ -41,7 +41,7 @@ static bool next_leaf(same_place *p, uint32_t *out_block)
         return false;
     uint32_t node = p->nodes[--p->waiting];
     while (node < leaf_base) {
-        photon_tree_node n = p->tree->nodes[node];
+        photon_tree_node n = photon_tree_node_at(p->tree, node);
         uint32_t is_right = p->position[n.axis] >= n.split;
         if (p->position[n.axis] == n.split)
             p->nodes[p->waiting++] = 2 * node + 1;

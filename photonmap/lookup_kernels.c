@@ -36,7 +36,7 @@ static void descend(const photon_tree *tree, const lookup_columns *points, const
     uint32_t count = 0;
     for (uint32_t i = 0; i < nodes->count; i++) {
         uint32_t lookup = nodes->lookup[i], first_child = 2 * nodes->node[i] + 1;
-        photon_tree_node n = tree->nodes[nodes->node[i]];
+        photon_tree_node n = photon_tree_node_at(tree, nodes->node[i]);
         float at = points->column[n.axis][lookup], off = at - n.split;
         uint32_t is_right = at >= n.split;
         out->lookup[count] = lookup;

@@ -10,7 +10,7 @@
 /* The points of lookups as columns: x, y, z, and the squared distance within which photons matter to each; negative:
  * none do. */
 typedef struct lookup_columns {
-    _Alignas(64) float column[4][PHOTON_LOOKUPS_MAX];
+    _Alignas(64) float column[PHOTON_TREE_AXES][PHOTON_LOOKUPS_MAX];
 } lookup_columns;
 
 enum { LOOKUP_REACH_SQUARED = 3 };

@@ -19,7 +19,7 @@ static void stack_other_sides(photon_query *q, uint32_t node, uint32_t height, f
     float most = photon_query_hair_beyond(limit);
     q->visits = 0;
     for (uint32_t up = q->tree->depth - height; up > 0; up--) {
-        photon_tree_node n = q->tree->nodes[(heap_index >> up) - 1];
+        photon_tree_node n = photon_tree_node_at(q->tree, (heap_index >> up) - 1);
         photon_query_push(q, photon_lanes_fill(0.0f), q->at - photon_lanes_fill(n.split), n.axis,
                           ((heap_index >> (up - 1)) ^ 1) - 1, most);
     }

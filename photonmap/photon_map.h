@@ -67,11 +67,14 @@ static inline bool photon_map_all_have_irradiance(const photon_map *map)
     return map->irradiance_photons.blocks == map->blocks;
 }
 
-/* Returns the index among all photons of an irradiance photon. */
+/* Returns the index among all photons of an irradiance photon: that of a photon even where the map's file was
+ * overwritten. */
 static inline uint32_t photon_map_index(const photon_map *map, uint32_t irradiance_photon)
 {
-    return photon_map_all_have_irradiance(map) ? irradiance_photon
-                                               : irradiance_photons_source(&map->irradiance_photons, irradiance_photon);
+    uint32_t index = photon_map_all_have_irradiance(map)
+                         ? irradiance_photon
+                         : irradiance_photons_source(&map->irradiance_photons, irradiance_photon);
+    return index < map->set.count ? index : 0;
 }
 
 static inline irradiance_slot *photon_map_slot(const photon_map *map, uint32_t irradiance_photon)

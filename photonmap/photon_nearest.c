@@ -15,7 +15,7 @@ void photon_walk_init(photon_walk *walk, const photon_tree *tree)
     walk->normal = (vec3){0.0f, 0.0f, 0.0f};
     walk->min_cos = 0.0f;
     walk->similar_code = walk->other_code = PHOTON_QUERY_NO_CODE;
-    for (int a = 0; a < PHOTON_WALK_AXES; a++) {
+    for (int a = 0; a < PHOTON_TREE_AXES; a++) {
         walk->low[0][a] = -INFINITY;
         walk->high[0][a] = INFINITY;
     }
@@ -39,7 +39,7 @@ static void walk_to(photon_walk *walk, uint32_t leaf)
     walk->leaf_heap_index = heap_index;
     photon_lanes low = load_lanes(walk->low[level]), high = load_lanes(walk->high[level]);
     for (; level < depth; level++) {
-        photon_tree_node n = tree->nodes[(heap_index >> (depth - level)) - 1];
+        photon_tree_node n = photon_tree_node_at(tree, (heap_index >> (depth - level)) - 1);
         photon_lanes split = photon_lanes_fill(n.split);
         if (heap_index >> (depth - 1 - level) & 1)
             low = photon_lanes_replace(low, split, n.axis);
@@ -99,7 +99,7 @@ uint32_t photon_walk_nearest(photon_walk *walk, uint32_t leaf, vec3 position, ve
         if (cell_holds(walk, level, q.at, limit))
             break;
         uint32_t child = walk->leaf_heap_index >> (tree->depth - level), block;
-        photon_tree_node n = tree->nodes[(child >> 1) - 1];
+        photon_tree_node n = photon_tree_node_at(tree, (child >> 1) - 1);
         q.visits = 0;
         photon_query_push(&q, photon_lanes_fill(0.0f), q.at - photon_lanes_fill(n.split), n.axis, (child ^ 1) - 1,
                           photon_query_hair_beyond(limit));

@@ -83,7 +83,7 @@ static bool find_other_leaves(const photon_walk *walk, const photon_lookup *look
         if (level < top) {
             uint32_t node = (first_leaf >> (depth - level)) - 1,
                      other_child = (first_leaf >> (depth - 1 - level) ^ 1) - 1;
-            add_some_lookups(walk->kernels->meet_plane(points, tree->nodes[node]), other_child, to);
+            add_some_lookups(walk->kernels->meet_plane(points, photon_tree_node_at(tree, node)), other_child, to);
         }
         lookup_visits *hold = from;
         from = to;

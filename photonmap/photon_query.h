@@ -17,7 +17,7 @@ static inline photon_lanes photon_lanes_fill(float value) { return (photon_lanes
 /* Returns a with its component along the axis replaced by b's. */
 static inline photon_lanes photon_lanes_replace(photon_lanes a, photon_lanes b, uint32_t axis)
 {
-    static const photon_lane_bits ALONG[3] = {{-1, 0, 0, 0}, {0, -1, 0, 0}, {0, 0, -1, 0}};
+    static const photon_lane_bits ALONG[PHOTON_TREE_AXES] = {{-1, 0, 0, 0}, {0, -1, 0, 0}, {0, 0, -1, 0}, {0, 0, 0, 0}};
     return (photon_lanes)(((photon_lane_bits)a & ~ALONG[axis]) | ((photon_lane_bits)b & ALONG[axis]));
 }
 
@@ -29,8 +29,8 @@ typedef struct photon_visit {
 } photon_visit;
 
 typedef struct photon_query {
-    photon_lanes at;   /* the point, in lanes */
-    float position[3]; /* its coordinates one by one */
+    photon_lanes at;                  /* the point, in lanes */
+    float position[PHOTON_TREE_AXES]; /* its coordinates one by one */
     const photon_tree *tree;
     vec3 normal;
     float min_cos;
@@ -71,7 +71,7 @@ static inline photon_subtree photon_query_descend(photon_query *q, photon_lanes 
     uint32_t base = (1u << (q->tree->depth - height)) - 1;
     float most = photon_query_hair_beyond(limit);
     while (node < base) {
-        photon_tree_node n = q->tree->nodes[node];
+        photon_tree_node n = photon_tree_node_at(q->tree, node);
         photon_lanes from_plane = q->at - photon_lanes_fill(n.split);
         uint32_t is_right = q->position[n.axis] >= n.split;
         photon_query_push(q, offset, from_plane, n.axis, 2 * node + 2 - is_right, most);
@@ -152,7 +152,7 @@ static inline void photon_query_init(photon_query *q, const photon_tree *tree, v
 {
     q->tree = tree;
     q->at = (photon_lanes){position.x, position.y, position.z, 0.0f};
-    q->position[0] = position.x, q->position[1] = position.y, q->position[2] = position.z;
+    q->position[0] = position.x, q->position[1] = position.y, q->position[2] = position.z, q->position[3] = 0.0f;
     q->normal = normal;
     q->min_cos = min_cos;
     q->similar_code = q->other_code = PHOTON_QUERY_NO_CODE;

@@ -221,10 +221,10 @@ uint64_t photon_tree_bytes(const photon_tree *tree)
 
 uint32_t photon_tree_leaf(const photon_tree *tree, vec3 position)
 {
-    const float at[3] = {position.x, position.y, position.z};
+    const float at[PHOTON_TREE_AXES] = {position.x, position.y, position.z};
     uint32_t leaf_base = (1u << tree->depth) - 1, node = 0;
     while (node < leaf_base) {
-        photon_tree_node n = tree->nodes[node];
+        photon_tree_node n = photon_tree_node_at(tree, node);
         node = 2 * node + 1 + (at[n.axis] >= n.split);
     }
     return node - leaf_base;

@@ -21,6 +21,9 @@ typedef struct photon_tree_node {
 /* The number of the lowest levels that searches may treat as a whole; their empty parts lie beyond infinite planes. */
 enum { PHOTON_SUBTREE_LEVELS = 3 };
 
+/* Coordinates that a node's axis picks from stand in arrays of so many, of which the last is never used. */
+enum { PHOTON_TREE_AXES = 4 };
+
 typedef struct photon_tree {
     photon_block *blocks; /* borrowed */
     uint32_t count;       /* of photons, below PHOTON_NONE */
@@ -38,6 +41,14 @@ ag_status photon_tree_build(run_context *run, photon *photons, uint32_t count, d
                             double progress_end, photon_tree *out_tree);
 void photon_tree_reset(photon_tree *tree);
 uint64_t photon_tree_bytes(const photon_tree *tree); /* Returns the bytes of the nodes. */
+
+/* Returns a node, whose axis is below PHOTON_TREE_AXES even where the file that the tree is in was overwritten. */
+static inline photon_tree_node photon_tree_node_at(const photon_tree *tree, uint32_t node)
+{
+    photon_tree_node n = tree->nodes[node];
+    n.axis &= PHOTON_TREE_AXES - 1;
+    return n;
+}
 
 /* A photon found: its squared distance as the high half, its index as the low half. Distances are not negative, so that
  * their bits order as integers do: comparing two neighbours compares (distance squared, index). */
@@ -66,7 +77,7 @@ uint32_t photon_tree_nearest(const photon_tree *tree, vec3 position, vec3 normal
 /* Returns the leaf that contains a point, by the number of its block. The tree must not be empty. */
 uint32_t photon_tree_leaf(const photon_tree *tree, vec3 position);
 
-enum { PHOTON_TREE_DEPTH_MAX = 32, PHOTON_WALK_AXES = 4 };
+enum { PHOTON_TREE_DEPTH_MAX = 32 };
 
 /* The leaf of the last lookup, and the cells of the nodes above it by their levels: the next lookup is cheap where its
  * leaf is near. The fourth axis has no bounds. */
@@ -77,7 +88,7 @@ typedef struct photon_walk {
     vec3 normal;                          /* of that lookup */
     float min_cos;                        /* of that lookup */
     uint32_t similar_code, other_code;    /* normals that were last found similar to it, and not */
-    _Alignas(16) float low[PHOTON_TREE_DEPTH_MAX][PHOTON_WALK_AXES], high[PHOTON_TREE_DEPTH_MAX][PHOTON_WALK_AXES];
+    _Alignas(16) float low[PHOTON_TREE_DEPTH_MAX][PHOTON_TREE_AXES], high[PHOTON_TREE_DEPTH_MAX][PHOTON_TREE_AXES];
 } photon_walk;
 
 void photon_walk_init(photon_walk *walk, const photon_tree *tree); /* borrows the tree */

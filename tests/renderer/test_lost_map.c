@@ -4,8 +4,10 @@
 #define _GNU_SOURCE
 #include "context.h"
 #include "fixtures/layers_fixture.h"
+#include "math/rng.h"
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 enum { SIZE = 24, VALUES = 3 * SIZE * SIZE, ENDLESS = 1000000 }; /* so many samples take half an hour */
@@ -36,6 +38,27 @@ static void hear(void *user, ag_log_level level, const char *text)
         snprintf(w->said, sizeof w->said, "%s", text);
 }
 
+/* Overwrites all of a file with random bytes, so that nodes, indices and slots may be anything. */
+static void overwrite(const char *path)
+{
+    rng random = rng_make(1, 0, 0);
+    struct stat status;
+    int file = open(path, O_WRONLY);
+    if (file < 0 || fstat(file, &status) != 0)
+        abort();
+    for (off_t left = status.st_size; left > 0;) {
+        uint64_t words[512];
+        for (size_t i = 0; i < sizeof words / sizeof *words; i++)
+            words[i] = rng_next(&random);
+        size_t size = left < (off_t)sizeof words ? (size_t)left : sizeof words;
+        if (write(file, words, size) != (ssize_t)size)
+            abort();
+        left -= (off_t)size;
+    }
+    if (close(file) != 0)
+        abort();
+}
+
 static void lose(work *w)
 {
     if (w->kind == LOSS_OF_ONE_LOOK) {
@@ -44,10 +67,7 @@ static void lose(work *w)
         if (truncate(w->map, 0) != 0)
             abort();
     } else {
-        char other[4096] = "another map";
-        int file = open(w->map, O_WRONLY);
-        if (file < 0 || write(file, other, sizeof other) != (ssize_t)sizeof other || close(file) != 0)
-            abort();
+        overwrite(w->map);
     }
 }
 
