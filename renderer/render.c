@@ -9,6 +9,7 @@
 #include "floating_point.h"
 #include "integrator/debug_views.h"
 #include "integrator/direct_pilot.h"
+#include "integrator/eye_pilot.h"
 #include "integrator/integrator.h"
 #include "odd_scene.h"
 #include "render_maps.h"
@@ -87,17 +88,50 @@ static transport make_transport(ag_context *context, const scene *s, const ag_re
 /* Few samples do not show what many photons are for, and tracing these would be most of the work: in three interiors
  * at a sample or four of 57,600 pixels, error times CPU time is least at one to four photons for each sample. With a
  * level of noise, most pixels of such rooms end at the least number of samples. */
-enum { PHOTONS_PER_SAMPLE = 2, PHOTONS_LEAST = 131072 };
+enum { PHOTONS_PER_SAMPLE = 2, PHOTONS_LEAST = 131072, PHOTONS_IN_THE_OPEN_LEAST = 16384 };
+
+/* The map of one picture alone is made for its samples. */
+static bool has_map_of_its_own(const ag_render_settings *settings)
+{
+    return !settings->photon_map_file && settings->photon_paths == 0;
+}
+
+/* Camera samples of the whole frame: with a level of noise, those that it has at least. */
+static double sample_count(const ag_render_settings *settings)
+{
+    const bool has_level = settings->noise_level > 0.0f;
+    const int most = settings->samples_per_pixel, least = settings->noise_min_samples;
+    return (double)settings->width * (double)settings->height * (double)(has_level && least < most ? least : most);
+}
 
 static uint64_t automatic_photon_count(const ag_render_settings *settings)
 {
-    if (settings->photon_map_file || settings->photon_paths > 0)
+    if (!has_map_of_its_own(settings))
         return AG_DEFAULT_PHOTONS_MOST;
-    const bool has_level = settings->noise_level > 0.0f;
-    const int most = settings->samples_per_pixel, least = settings->noise_min_samples;
-    const double samples =
-        (double)settings->width * (double)settings->height * (double)(has_level && least < most ? least : most);
-    return (uint64_t)fmin(fmax(PHOTONS_PER_SAMPLE * samples, PHOTONS_LEAST), AG_DEFAULT_PHOTONS_MOST);
+    return (uint64_t)fmin(fmax(PHOTONS_PER_SAMPLE * sample_count(settings), PHOTONS_LEAST), AG_DEFAULT_PHOTONS_MOST);
+}
+
+/* In the open most gather rays meet nothing, and the map's squared error is less of the picture's by the square of that
+ * share: as many photons less leave it as it is in a room, which a view is that is enclosed by four fifths. In small
+ * pictures photons are most of the time; in large ones more of them are worth it, in proportion to the root of the
+ * samples where the error is a + b / photons and the time c samples + d photons. perf/pictures.md has figures. */
+static const double PHOTONS_PER_ROOT = 1400.0, ROOM_LEAST = 0.8;
+
+static ag_status take_fewer_in_the_open(ag_context *context, const scene *s, ag_render_settings *in_out_settings)
+{
+    double enclosure;
+    phase_begin begin = context_begin_phase();
+    ag_status status = eye_pilot_find_enclosure(s, &context->run, in_out_settings, &enclosure);
+    context_add_to_phase(context, AG_PHASE_PHOTONS, begin);
+    AG_TRY(status);
+    const double in_room = fmax(PHOTONS_PER_ROOT * sqrt(sample_count(in_out_settings)), PHOTONS_LEAST);
+    const double share = enclosure < ROOM_LEAST ? enclosure / ROOM_LEAST : 1.0;
+    const double count = fmax(in_room * share * share, PHOTONS_IN_THE_OPEN_LEAST);
+    if (count < (double)in_out_settings->photon_count)
+        in_out_settings->photon_count = (uint64_t)count;
+    log_message(context->log, AG_LOG_INFO, "%.0f %% of the view are enclosed: %llu photons by default",
+                100.0 * enclosure, (unsigned long long)in_out_settings->photon_count);
+    return AG_OK;
 }
 
 ag_status rendering_settle(ag_context *context, const scene *s, const ag_render_settings *wanted,
@@ -119,10 +153,14 @@ ag_status rendering_settle(ag_context *context, const scene *s, const ag_render_
     const integrator *kind = integrator_of(out_settings->integrator);
     if (kind && out_settings->direct_guiding == AG_DIRECT_GUIDING_AUTOMATIC)
         out_settings->direct_guiding = kind->direct_guiding;
-    if (s->has_camera)
-        return render_settings_check(context, out_settings);
-    log_message(context->log, AG_LOG_ERROR, "the scene has no Camera");
-    return AG_ERROR_SCENE;
+    if (!s->has_camera) {
+        log_message(context->log, AG_LOG_ERROR, "the scene has no Camera");
+        return AG_ERROR_SCENE;
+    }
+    AG_TRY(render_settings_check(context, out_settings));
+    const bool is_open = wanted->photon_count == AG_PHOTON_COUNT_AUTOMATIC && has_map_of_its_own(out_settings) &&
+                         kind->prepare && out_settings->max_depth >= 2;
+    return is_open ? take_fewer_in_the_open(context, s, out_settings) : AG_OK;
 }
 
 /* --- a photon map that others can reach --- */

@@ -16,8 +16,8 @@
 enum { PHOTONS_PER_PATH = 100, EYE_PATHS_MIN = 1024, EYE_PATHS_MAX = 9216, GATHER_RAYS = 8, GRID_MAX = 4096 };
 /* One importon for so many points that are asked, and the scatterings that it has at most. */
 enum { POINTS_PER_IMPORTON = 2, IMPORTON_SCATTERINGS_MAX = 8 };
-/* Eye paths that look for points that are lit. */
-enum { LIT_PATHS = 12288 };
+/* Eye paths that look for points that are lit, and that look how much is enclosed. */
+enum { LIT_PATHS = 12288, ENCLOSURE_PATHS = 2048 };
 /* The stream of the lamps that importons look for. */
 enum { STREAM_LAMPS = 1 };
 /* Sampler keys apart from the picture's own. */
@@ -38,11 +38,14 @@ static void add_importon(pilot_row *row, pilot_list which, vec3 position, vec3 n
     pilot_row_add(row, which, &p);
 }
 
+/* What eye paths look for. */
+typedef enum pilot_aim { PILOT_AIM_REQUESTS, PILOT_AIM_LIT, PILOT_AIM_ENCLOSURE } pilot_aim;
+
 typedef struct pilot_job {
     transport t;
     int width, height; /* of the grid */
     float aspect;
-    bool finds_lit;  /* points of direct light, and nothing else */
+    pilot_aim aim;
     pilot_row *rows; /* [height] */
 } pilot_job;
 
@@ -132,22 +135,29 @@ static void note_caustic_way(const transport *t, const vertex *met, pilot_row *o
     add_importon(out, PILOT_SEEN_WAYS, at.position, at.facing_normal, v.arrived.direction);
 }
 
+/* Sends the i-th gather ray of a vertex. Returns whether it meets something; out_first: its direction and weight. */
+static bool send_gather_ray(const transport *t, eye_worker *worker, const vertex *v, const sampler *where,
+                            int path_vertex, uint32_t i, rng *out_random, bsdf_sample *out_first, vertex *out_met)
+{
+    *out_random = rng_make(where->key, (uint64_t)path_vertex, i);
+    vec2 u = sampler_2d_of(where, SAMPLE_GATHER, path_vertex, GATHER_RAYS, i);
+    if (!bsdf_sample_direction(&v->scattering, BSDF_GATHERED, BSDF_RADIANCE, rng_float(out_random), u, out_first))
+        return false;
+    scene_ray ray = transport_scattered_ray(t, v, out_first->direction, false);
+    ray.skips_uv = true;
+    return transport_travel_to(t, worker, ray, out_first->weight, out_random, out_met);
+}
+
 static void gather_points(const transport *t, eye_worker *worker, const vertex *v, const sampler *where,
                           int path_vertex, int scatterings_left, pilot_row *out)
 {
     for (uint32_t i = 0; scatterings_left >= 1 && i < GATHER_RAYS; i++) {
-        rng random = rng_make(where->key, (uint64_t)path_vertex, i);
-        rng side = rng_make(where->key, (uint64_t)path_vertex, GATHER_RAYS + i);
-        vec2 u = sampler_2d_of(where, SAMPLE_GATHER, path_vertex, GATHER_RAYS, i);
+        rng random, side = rng_make(where->key, (uint64_t)path_vertex, GATHER_RAYS + i);
         bsdf_sample first;
         vertex met;
         gather_ends ends;
         rgb known = rgb_gray(0.0f);
-        if (!bsdf_sample_direction(&v->scattering, BSDF_GATHERED, BSDF_RADIANCE, rng_float(&random), u, &first))
-            continue;
-        scene_ray ray = transport_scattered_ray(t, v, first.direction, false);
-        ray.skips_uv = true;
-        if (!transport_travel_to(t, worker, ray, first.weight, &random, &met))
+        if (!send_gather_ray(t, worker, v, where, path_vertex, i, &random, &first, &met))
             continue;
         if (!met.is_in_medium)
             note_caustic_way(t, &met, out);
@@ -161,6 +171,45 @@ static void gather_points(const transport *t, eye_worker *worker, const vertex *
             trace_importon(t, worker, &ends.end[0], rng_make(random.state, (uint64_t)path_vertex, i), out);
         }
     }
+}
+
+/* Counts the gather rays of a point that meet something, and adds the square to the row's sum. */
+static void note_enclosure(const transport *t, eye_worker *worker, const vertex *v, const sampler *where,
+                           int path_vertex, pilot_row *out)
+{
+    uint64_t count = 0;
+    for (uint32_t i = 0; i < GATHER_RAYS; i++) {
+        rng random;
+        bsdf_sample first;
+        vertex met;
+        count += send_gather_ray(t, worker, v, where, path_vertex, i, &random, &first, &met);
+    }
+    out->squared_meetings += count * count;
+}
+
+/* Notes what the path looks for at a vertex from which it can go on. Returns whether it has found all that it looks
+ * for. */
+static bool note_vertex(const pilot_job *job, eye_worker *worker, const vertex *v, const sampler *where,
+                        const eye_path *path, pilot_row *out)
+{
+    const transport *t = &job->t;
+    const bool gathers = bsdf_has(&v->scattering, BSDF_GATHERED);
+    if (job->aim == PILOT_AIM_LIT) {
+        if (bsdf_is_sampled_from_light(&v->scattering, BSDF_ALL))
+            pilot_row_add(
+                out, PILOT_LIT,
+                &(lit_point){v->hit, v->arrived, vertex_light_normal(v, gathers ? BSDF_GATHERED : BSDF_TRACED)});
+        return false;
+    }
+    if (gathers && job->aim == PILOT_AIM_ENCLOSURE) {
+        note_enclosure(t, worker, v, where, path->vertex, out);
+    } else if (gathers && path->vertex > 0 && rgb_max(path->throughput) < SHADING_LOW_CONTRIBUTION) {
+        add_sides(t, v, out, PILOT_GATHERED);
+    } else if (gathers) {
+        add_sides(t, v, out, PILOT_SEEN);
+        gather_points(t, worker, v, where, path->vertex, eye_path_scatterings_left(t, path) - 1, out);
+    }
+    return gathers && job->aim == PILOT_AIM_ENCLOSURE;
 }
 
 /* Follows an eye path as shading.c does, but looks for no light. */
@@ -180,18 +229,8 @@ static void look(const pilot_job *job, eye_worker *worker, int x, int y, pilot_r
         vertex v;
         if (!eye_path_trace(t, worker, &path, NULL, &v))
             return;
-        bool is_last = eye_path_is_last(t, &path);
-        if (job->finds_lit && !is_last && bsdf_is_sampled_from_light(&v.scattering, BSDF_ALL)) {
-            bsdf_lobes lobes = bsdf_has(&v.scattering, BSDF_GATHERED) ? BSDF_GATHERED : BSDF_TRACED;
-            pilot_row_add(out, PILOT_LIT, &(lit_point){v.hit, v.arrived, vertex_light_normal(&v, lobes)});
-        } else if (!job->finds_lit && !is_last && bsdf_has(&v.scattering, BSDF_GATHERED)) {
-            if (path.vertex > 0 && rgb_max(path.throughput) < SHADING_LOW_CONTRIBUTION) {
-                add_sides(t, &v, out, PILOT_GATHERED);
-            } else {
-                add_sides(t, &v, out, PILOT_SEEN);
-                gather_points(t, worker, &v, &where, path.vertex, eye_path_scatterings_left(t, &path) - 1, out);
-            }
-        }
+        if (!eye_path_is_last(t, &path) && note_vertex(job, worker, &v, &where, &path, out))
+            return;
         if (!eye_path_go_on(t, &v, BSDF_TRACED, eye_path_u_lobe(&path), 1, &path))
             return;
     }
@@ -318,12 +357,25 @@ void eye_pilot_reset(eye_pilot *pilot)
 ag_status eye_pilot_find_lit(const scene *s, run_context *run, const ag_render_settings *settings,
                              lit_point **out_points, uint32_t *out_count)
 {
-    pilot_job job = {.t = {.s = s, .run = run}, .finds_lit = true};
+    pilot_job job = {.t = {.s = s, .run = run}, .aim = PILOT_AIM_LIT};
     void *points = NULL;
     ag_status status = look_over_frame(&job, run, LIT_PATHS, settings);
     if (status == AG_OK)
         status = pilot_rows_merge(job.rows, job.height, PILOT_LIT, &points, out_count);
     pilot_rows_destroy(job.rows, job.height);
     *out_points = points;
+    return status;
+}
+
+ag_status eye_pilot_find_enclosure(const scene *s, run_context *run, const ag_render_settings *settings,
+                                   double *out_enclosure)
+{
+    pilot_job job = {.t = {.s = s, .run = run}, .aim = PILOT_AIM_ENCLOSURE};
+    ag_status status = look_over_frame(&job, run, ENCLOSURE_PATHS, settings);
+    uint64_t sum = 0;
+    for (int i = 0; status == AG_OK && i < job.height; i++)
+        sum += job.rows[i].squared_meetings;
+    pilot_rows_destroy(job.rows, job.height);
+    *out_enclosure = sqrt((double)sum / (GATHER_RAYS * GATHER_RAYS * (double)job.width * (double)job.height));
     return status;
 }

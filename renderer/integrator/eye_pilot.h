@@ -27,6 +27,12 @@ typedef struct eye_pilot {
 ag_status eye_pilot_look(const scene *s, run_context *run, const ag_render_settings *settings, eye_pilot *out_pilot);
 void eye_pilot_reset(eye_pilot *pilot);
 
+/* Finds how much of what the picture shows is enclosed: the root of the mean, over the eye paths, of the squared share
+ * of a point's gather rays that meet something; 0 for a path that comes to no point that gathers. Of the settings it
+ * reads width over height, depth, light through panes and seed. Errors: AG_ERROR_MEMORY, AG_CANCELLED. */
+ag_status eye_pilot_find_enclosure(const scene *s, run_context *run, const ag_render_settings *settings,
+                                   double *out_enclosure);
+
 /* A point where the picture will ask for direct light. */
 typedef struct lit_point {
     surface_hit hit;

@@ -98,12 +98,14 @@ static void expect_photons(json_int_t global, json_int_t caustic, const char *co
     json_decref(stats);
 }
 
-#define EXPECT_PHOTONS(global, caustic, ...)                                                                           \
-    expect_photons(global, caustic,                                                                                    \
-                   ARGUMENTS("-q", "--gather-samples=1", "--stats=n.json", "-o", "n.exr", __VA_ARGS__,                 \
-                             PROGRAM_SCENES "sphere.pbrt"))
+#define EXPECT_PHOTONS_OF(scene, global, caustic, ...)                                                                 \
+    expect_photons(                                                                                                    \
+        global, caustic,                                                                                               \
+        ARGUMENTS("-q", "--gather-samples=1", "--stats=n.json", "-o", "n.exr", __VA_ARGS__, PROGRAM_SCENES scene))
+#define EXPECT_PHOTONS(global, caustic, ...) EXPECT_PHOTONS_OF("sphere.pbrt", global, caustic, __VA_ARGS__)
 
-/* The whole frame's camera samples decide, not those of a crop; a kept map is not of one picture alone. */
+/* The whole frame's camera samples decide, not those of a crop; a kept map is not of one picture alone. Of a floor in
+ * the open no gather ray meets anything. */
 static void test_photons_by_samples(void **state)
 {
     (void)state;
@@ -115,6 +117,8 @@ static void test_photons_by_samples(void **state)
     EXPECT_PHOTONS(1000000, 500000, "--spp=1024", "--size=100x100", "--cropwindow=0,0.02,0,0.02");
     EXPECT_PHOTONS(1000000, 500000, "--spp=1", "--size=8x6", "--photon-map=n.map");
     EXPECT_PHOTONS(700, 65536, "--spp=1", "--size=8x6", "--photons=700");
+    EXPECT_PHOTONS_OF("lamp_point.pbrt", 16384, 80000, "--spp=8", "--size=100x100", "--cropwindow=0,0.1,0,0.1");
+    EXPECT_PHOTONS_OF("lamp_point.pbrt", 700, 80000, "--spp=8", "--size=100x100", "--photons=700");
 }
 
 int main(void)

@@ -227,6 +227,35 @@ static void bright_paths_are_split_and_led(void **state)
     test_run_reset(&r);
 }
 
+/* What is enclosed of a view, from the origin along z. */
+static double enclosure(test_run *r, const char *world)
+{
+    scene *s = scene_of(r, world);
+    double found;
+    ag_render_settings settings = ag_default_render_settings();
+    settings.width = settings.height = 64;
+    assert_int_equal(eye_pilot_find_enclosure(s, &r->run, &settings, &found), AG_OK);
+    scene_destroy(s);
+    return found;
+}
+
+/* A plate in front of the camera and, far behind it, a disc whose radius is its distance, so that its form factor is a
+ * half: of eight gather rays the square of the share that meets it is (1/2)^2 + 1/32 on average if they are
+ * independent, and no less than (1/2)^2. */
+static void a_view_is_enclosed_by_what_its_gather_rays_meet(void **state)
+{
+    (void)state;
+    test_run r;
+    test_run_init(&r, 2);
+#define PLATE "Shape \"bilinearmesh\" \"point3 P\" [-9 -9 2  9 -9 2  -9 9 2  9 9 2]\n"
+    assert_close(enclosure(&r, ROOM WINDOW), 1.0, 1e-9);
+    assert_close(enclosure(&r, PLATE), 0.0, 1e-9);
+    double half = enclosure(&r, PLATE "Translate 0 0 -1998 Shape \"disk\" \"float radius\" [2000]\n");
+    print_message("enclosed: %.4f by a disc of form factor one half\n", half);
+    assert_true(half > 0.5 && half < sqrt(0.25 + 1.0 / 32.0) + 0.005);
+    test_run_reset(&r);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -235,6 +264,7 @@ int main(void)
         cmocka_unit_test(a_curtain_passes_light_on_from_its_outer_side),
         cmocka_unit_test(bright_paths_are_split_and_led),
         cmocka_unit_test(at_a_depth_of_two_no_light_goes_on),
+        cmocka_unit_test(a_view_is_enclosed_by_what_its_gather_rays_meet),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -75,8 +75,9 @@ typedef struct ag_render_settings {
 
     uint64_t photon_count; /* photons to store in the global map, [1, 2^32 - 2]. Default AG_PHOTON_COUNT_AUTOMATIC:
                               two for each camera sample of the whole frame (with a level of noise, for each of the
-                              noise_min_samples at most), from 131072 to AG_DEFAULT_PHOTONS_MOST; that most with a
-                              photon_map_file or photon_paths, whose photons are not of one picture alone */
+                              noise_min_samples at most), from 131072 to AG_DEFAULT_PHOTONS_MOST, and fewer in the
+                              open, where few gather rays meet anything; that most with a photon_map_file or
+                              photon_paths, whose photons are not of one picture alone */
     uint64_t photon_paths; /* light paths that the photons of the global map come from, [0, 10^15]; 0, the default: as
                               many as it takes to store photon_count photons. A fixed number is for the frames of an
                               animation: a path that meets nothing new then has the same photons in each frame, and
@@ -84,7 +85,8 @@ typedef struct ag_render_settings {
                               stored; a warning tells where that ends the tracing early. photon_aim and
                               gather_guiding are then 0 unless set */
     uint64_t caustic_photon_count; /* photons to store in the caustic map, [0, 2^32 - 2]. Default
-                                      AG_PHOTON_COUNT_AUTOMATIC: half of what that means for photon_count */
+                                      AG_PHOTON_COUNT_AUTOMATIC: half of what that means for photon_count in a
+                                      room */
     int nearest;                   /* photons of an estimate, [1, 65536] */
     float radius;              /* largest radius of an estimate, scene units; 0: derived from the photons' density */
     float irradiance_fraction; /* share of the photons at which irradiance is kept, (0, 1]: gather rays look up the
