@@ -68,9 +68,10 @@ void claim_owners_reset(claim_owners *owners)
 void claim_owners_renew(claim_owners *owners, uint32_t claimer)
 {
     uint32_t index = claimer & (CLAIM_OWNERS_MAX - 1), before = claimer >> INDEX_BITS, next = next_generation(before);
-    /* The table is written first: a reader of a claim with the new number finds it there, since claims release. */
-    if (cas_acquire_release_u32(&owners->table[index].generation, &before, next))
-        store_relaxed_u32(&owners->claimer, next << INDEX_BITS | index);
+    /* The table is written first: a reader of a claim with the new number finds it there, since claims release. Where
+     * another thread has written it, the number is the same; where the file was overwritten, what is there is void. */
+    cas_acquire_release_u32(&owners->table[index].generation, &before, next);
+    cas_acquire_release_u32(&owners->claimer, &claimer, next << INDEX_BITS | index);
 }
 
 bool claim_owners_is_alive(const claim_owners *owners, uint32_t claimer)

@@ -16,14 +16,13 @@ clear_spaces *clear_spaces_create(const scene *s, const photon_block *blocks, ui
 
 const clear_space *clear_spaces_get(clear_spaces *spaces, uint32_t block, clear_space *spare)
 {
-    clear_spaces_entry *e = &spaces->entries[block];
+    clear_spaces_entry *e = block < spaces->count ? &spaces->entries[block] : NULL;
     uint32_t first = block * PHOTON_BLOCK_LANES, expected = EMPTY;
-    const bool is_there = block < spaces->count;
-    if (is_there && load_acquire_u32(&e->state) == READY) /* pairs with the release below */
+    if (e && load_acquire_u32(&e->state) == READY) /* pairs with the release below */
         return &e->space;
     vec3 normal = direction_decode(photon_block_normal(spaces->blocks, first));
     clear_space_find(spaces->s, photon_block_position(spaces->blocks, first), normal, spaces->radius, spare);
-    if (is_there && cas_acquire_u32(&e->state, &expected, BUSY)) {
+    if (e && cas_acquire_u32(&e->state, &expected, BUSY)) {
         e->space = *spare;
         store_release_u32(&e->state, READY); /* pairs with the acquire above */
     }

@@ -102,6 +102,9 @@ static inline void photon_disc_add_offset(photon_disc_sums *sums, int axis, int3
     sums->offset[axis] = (int32_t)((uint32_t)sums->offset[axis] + (uint32_t)offset);
 }
 
+/* An offset as an integer; as in the vector kernels INT32_MIN where it is none, as of a photon that has moved. */
+static inline int32_t photon_disc_offset(float units) { return fabsf(units) < 0x1p31f ? (int32_t)units : INT32_MIN; }
+
 /* Adds a photon to the sums. */
 static inline void photon_disc_add(const photon_disc *disc, uint32_t index, photon_disc_sums *sums)
 {
@@ -111,9 +114,9 @@ static inline void photon_disc_add(const photon_disc *disc, uint32_t index, phot
         sums->flux[c] += (int64_t)((uint64_t)(code >> (16 - 8 * c) & 255) << 32 >> below);
     vec3 offset = vec3_sub(photon_block_position(disc->blocks, index), disc->position);
     float scale = PHOTON_DISC_OFFSET_UNIT / disc->radius;
-    photon_disc_add_offset(sums, 0, (int32_t)(offset.x * scale));
-    photon_disc_add_offset(sums, 1, (int32_t)(offset.y * scale));
-    photon_disc_add_offset(sums, 2, (int32_t)(offset.z * scale));
+    photon_disc_add_offset(sums, 0, photon_disc_offset(offset.x * scale));
+    photon_disc_add_offset(sums, 1, photon_disc_offset(offset.y * scale));
+    photon_disc_add_offset(sums, 2, photon_disc_offset(offset.z * scale));
 }
 
 extern const disc_kernels disc_kernels_plain;

@@ -245,6 +245,7 @@ AVX512 static inline int64_t sum_of_near(__m512i v)
     return _mm512_reduce_add_epi64(_mm512_add_epi64(low, high)) << (32 - NEAR_OCTAVES);
 }
 
+/* Sums in 64 bits, since _mm512_reduce_add_epi32 adds signed numbers, which must not overflow. */
 AVX512 static inline int32_t sum_of_offsets(__m512i v)
 {
     __m512i low = _mm512_cvtepi32_epi64(_mm512_castsi512_si256(v)),

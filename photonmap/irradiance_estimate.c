@@ -75,7 +75,8 @@ static bool rings_lack_flux(const photon_found *found, float inner, float share)
         uint32_t code = photon_block_flux(found->blocks, photon_found_index(found, i));
         int shift = exponent_max - flux_exponent(code);
         uint64_t largest = flux_largest_mantissa(code);
-        uint64_t flux = shift > 2 * FRACTION_BITS ? 0 : largest << FRACTION_BITS >> shift;
+        /* less than 0: the file that the map is in is being overwritten */
+        uint64_t flux = shift < 0 || shift > 2 * FRACTION_BITS ? 0 : largest << FRACTION_BITS >> shift;
         all += flux;
         squares += flux * flux;
         inside += found->distances_squared[i] <= inner ? flux : 0;

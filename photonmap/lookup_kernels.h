@@ -14,6 +14,7 @@ typedef struct lookup_columns {
 } lookup_columns;
 
 enum { LOOKUP_REACH_SQUARED = 3 };
+_Static_assert((int)LOOKUP_REACH_SQUARED < (int)PHOTON_TREE_AXES, "a node's axis picks a column");
 
 /* Pairs of a lookup, by its number, and a node, a leaf or a photon that it comes to. */
 enum { LOOKUP_VISITS_MAX = 16 * PHOTON_LOOKUPS_MAX };

@@ -19,7 +19,7 @@ typedef struct nodes_8 {
     __m256i axis;
 } nodes_8;
 
-/* Node by node, not word by word: half as many loads. */
+/* photon_tree_node_at of eight; node by node, not word by word: half as many loads. */
 AVX2 static inline nodes_8 gather_nodes(const photon_tree *tree, __m256i node)
 {
     enum { IN_ORDER = _MM_SHUFFLE(3, 1, 2, 0) };
@@ -30,7 +30,8 @@ AVX2 static inline nodes_8 gather_nodes(const photon_tree *tree, __m256i node)
     __m256 axes = _mm256_shuffle_ps(low, high, _MM_SHUFFLE(3, 1, 3, 1));
     return (nodes_8){
         _mm256_castpd_ps(_mm256_permute4x64_pd(_mm256_castps_pd(splits), IN_ORDER)),
-        _mm256_permute4x64_epi64(_mm256_castps_si256(axes), IN_ORDER),
+        _mm256_and_si256(_mm256_permute4x64_epi64(_mm256_castps_si256(axes), IN_ORDER),
+                         _mm256_set1_epi32(PHOTON_TREE_AXES - 1)),
     };
 }
 

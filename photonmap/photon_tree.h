@@ -21,7 +21,8 @@ typedef struct photon_tree_node {
 /* The number of the lowest levels that searches may treat as a whole; their empty parts lie beyond infinite planes. */
 enum { PHOTON_SUBTREE_LEVELS = 3 };
 
-/* Coordinates that a node's axis picks from stand in arrays of so many, of which the last is never used. */
+/* Coordinates that a node's axis picks from stand in arrays of so many; the last is for axes that are none, as in a
+ * file that was overwritten. */
 enum { PHOTON_TREE_AXES = 4 };
 
 typedef struct photon_tree {

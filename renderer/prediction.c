@@ -399,11 +399,11 @@ static ag_status predict(ag_context *context, const ag_scene *loaded, const ag_r
     ag_render_settings settings;
     ag_prediction made = {0};
     int channel_count = 0;
+    const ag_statistics statistics = context->statistics;
+    const ag_render_settings rendered = context->rendered;
     ag_status status = rendering_settle(context, loaded->s, wanted, &settings);
     if (status == AG_OK)
         status = predict_memory(context, loaded->s, &settings, &made, &channel_count);
-    const ag_statistics statistics = context->statistics;
-    const ag_render_settings rendered = context->rendered;
     if (status == AG_OK && with_time)
         status = predict_time(context, loaded, &settings, channel_count, &made);
     context->statistics = statistics; /* trials are nothing of a picture */

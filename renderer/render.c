@@ -111,10 +111,12 @@ static uint64_t automatic_photon_count(const ag_render_settings *settings)
     return (uint64_t)fmin(fmax(PHOTONS_PER_SAMPLE * sample_count(settings), PHOTONS_LEAST), AG_DEFAULT_PHOTONS_MOST);
 }
 
-/* In the open most gather rays meet nothing, and the map's squared error is less of the picture's by the square of that
- * share: as many photons less leave it as it is in a room, which a view is that is enclosed by four fifths. In small
- * pictures photons are most of the time; in large ones more of them are worth it, in proportion to the root of the
- * samples where the error is a + b / photons and the time c samples + d photons. perf/pictures.md has figures. */
+/* In the open most gather rays meet nothing, and the map's squared error is less of the picture's by e^2, where e is
+ * the share that is enclosed: as many photons less leave it as it is in a room, for which e is four fifths and more. So
+ * of n samples an open view has PHOTONS_PER_ROOT sqrt(n) (e / ROOM_LEAST)^2 photons: in small pictures, where photons
+ * are most of the time, fewer than a room; in large ones as many, by the root of the samples, since the product of an
+ * error of a + b / photons and a time of c samples + d photons is least so. The factor, like the least number, is one
+ * with which a few open scenes of 160 x 120 pixels are near their best (perf/pictures.md). */
 static const double PHOTONS_PER_ROOT = 1400.0, ROOM_LEAST = 0.8;
 
 static ag_status take_fewer_in_the_open(ag_context *context, const scene *s, ag_render_settings *in_out_settings)
@@ -123,14 +125,13 @@ static ag_status take_fewer_in_the_open(ag_context *context, const scene *s, ag_
     phase_begin begin = context_begin_phase();
     ag_status status = eye_pilot_find_enclosure(s, &context->run, in_out_settings, &enclosure);
     context_add_to_phase(context, AG_PHASE_PHOTONS, begin);
-    AG_TRY(status);
-    const double in_room = fmax(PHOTONS_PER_ROOT * sqrt(sample_count(in_out_settings)), PHOTONS_LEAST);
-    const double share = enclosure < ROOM_LEAST ? enclosure / ROOM_LEAST : 1.0;
-    const double count = fmax(in_room * share * share, PHOTONS_IN_THE_OPEN_LEAST);
+    if (status != AG_OK || enclosure >= ROOM_LEAST)
+        return status;
+    const double share = enclosure / ROOM_LEAST;
+    const double base = fmax(PHOTONS_PER_ROOT * sqrt(sample_count(in_out_settings)), PHOTONS_LEAST);
+    const double count = fmax(base * share * share, PHOTONS_IN_THE_OPEN_LEAST);
     if (count < (double)in_out_settings->photon_count)
         in_out_settings->photon_count = (uint64_t)count;
-    log_message(context->log, AG_LOG_INFO, "%.0f %% of the view are enclosed: %llu photons by default",
-                100.0 * enclosure, (unsigned long long)in_out_settings->photon_count);
     return AG_OK;
 }
 
@@ -158,9 +159,9 @@ ag_status rendering_settle(ag_context *context, const scene *s, const ag_render_
         return AG_ERROR_SCENE;
     }
     AG_TRY(render_settings_check(context, out_settings));
-    const bool is_open = wanted->photon_count == AG_PHOTON_COUNT_AUTOMATIC && has_map_of_its_own(out_settings) &&
-                         kind->prepare && out_settings->max_depth >= 2;
-    return is_open ? take_fewer_in_the_open(context, s, out_settings) : AG_OK;
+    const bool may_be_open = wanted->photon_count == AG_PHOTON_COUNT_AUTOMATIC && has_map_of_its_own(out_settings) &&
+                             kind->has_photon_map && out_settings->max_depth >= 2;
+    return may_be_open ? take_fewer_in_the_open(context, s, out_settings) : AG_OK;
 }
 
 /* --- a photon map that others can reach --- */
@@ -241,6 +242,9 @@ static ag_status prepare(ag_rendering *r, const ag_rendering *with)
 static ag_status begin_rendering(ag_rendering *r, const ag_render_settings *settings)
 {
     AG_TRY(rendering_settle(r->context, r->s, settings, &r->settings));
+    if (settings->photon_count == AG_PHOTON_COUNT_AUTOMATIC && integrator_of(r->settings.integrator)->has_photon_map)
+        log_message(r->context->log, AG_LOG_INFO, "photons by default: %llu",
+                    (unsigned long long)r->settings.photon_count);
     r->context->rendered = r->settings;
     r->context->rendered.photon_map_file = NULL; /* the caller's */
     r->aspect = (float)r->settings.width / (float)r->settings.height;

@@ -135,7 +135,8 @@ static void note_caustic_way(const transport *t, const vertex *met, pilot_row *o
     add_importon(out, PILOT_SEEN_WAYS, at.position, at.facing_normal, v.arrived.direction);
 }
 
-/* Sends the i-th gather ray of a vertex. Returns whether it meets something; out_first: its direction and weight. */
+/* Sends the i-th gather ray of a vertex. Returns whether it meets something. out_first: its direction and weight;
+ * out_random: its random numbers, for what follows; out_met: as of transport_travel_to. */
 static bool send_gather_ray(const transport *t, eye_worker *worker, const vertex *v, const sampler *where,
                             int path_vertex, uint32_t i, rng *out_random, bsdf_sample *out_first, vertex *out_met)
 {
@@ -173,18 +174,20 @@ static void gather_points(const transport *t, eye_worker *worker, const vertex *
     }
 }
 
-/* Counts the gather rays of a point that meet something, and adds the square to the row's sum. */
+/* Adds the squared share of a point's gather rays that meet something. */
 static void note_enclosure(const transport *t, eye_worker *worker, const vertex *v, const sampler *where,
                            int path_vertex, pilot_row *out)
 {
-    uint64_t count = 0;
+    uint32_t count = 0;
     for (uint32_t i = 0; i < GATHER_RAYS; i++) {
         rng random;
         bsdf_sample first;
         vertex met;
         count += send_gather_ray(t, worker, v, where, path_vertex, i, &random, &first, &met);
     }
-    out->squared_meetings += count * count;
+    const double share = (double)count / GATHER_RAYS;
+    out->points++;
+    out->enclosures += share * share;
 }
 
 /* Notes what the path looks for at a vertex from which it can go on. Returns whether it has found all that it looks
@@ -201,15 +204,19 @@ static bool note_vertex(const pilot_job *job, eye_worker *worker, const vertex *
                 &(lit_point){v->hit, v->arrived, vertex_light_normal(v, gathers ? BSDF_GATHERED : BSDF_TRACED)});
         return false;
     }
-    if (gathers && job->aim == PILOT_AIM_ENCLOSURE) {
+    if (!gathers)
+        return false;
+    if (job->aim == PILOT_AIM_ENCLOSURE) {
         note_enclosure(t, worker, v, where, path->vertex, out);
-    } else if (gathers && path->vertex > 0 && rgb_max(path->throughput) < SHADING_LOW_CONTRIBUTION) {
+        return true;
+    }
+    if (path->vertex > 0 && rgb_max(path->throughput) < SHADING_LOW_CONTRIBUTION) {
         add_sides(t, v, out, PILOT_GATHERED);
-    } else if (gathers) {
+    } else {
         add_sides(t, v, out, PILOT_SEEN);
         gather_points(t, worker, v, where, path->vertex, eye_path_scatterings_left(t, path) - 1, out);
     }
-    return gathers && job->aim == PILOT_AIM_ENCLOSURE;
+    return false;
 }
 
 /* Follows an eye path as shading.c does, but looks for no light. */
@@ -227,8 +234,10 @@ static void look(const pilot_job *job, eye_worker *worker, int x, int y, pilot_r
     eye_path path = eye_path_begin(&from, SHADING_ROULETTE_AFTER, false);
     for (;;) {
         vertex v;
-        if (!eye_path_trace(t, worker, &path, NULL, &v))
+        if (!eye_path_trace(t, worker, &path, NULL, &v)) {
+            out->escapes++;
             return;
+        }
         if (!eye_path_is_last(t, &path) && note_vertex(job, worker, &v, &where, &path, out))
             return;
         if (!eye_path_go_on(t, &v, BSDF_TRACED, eye_path_u_lobe(&path), 1, &path))
@@ -372,10 +381,12 @@ ag_status eye_pilot_find_enclosure(const scene *s, run_context *run, const ag_re
 {
     pilot_job job = {.t = {.s = s, .run = run}, .aim = PILOT_AIM_ENCLOSURE};
     ag_status status = look_over_frame(&job, run, ENCLOSURE_PATHS, settings);
-    uint64_t sum = 0;
-    for (int i = 0; status == AG_OK && i < job.height; i++)
-        sum += job.rows[i].squared_meetings;
+    double sum = 0.0, count = 0.0;
+    for (int i = 0; status == AG_OK && i < job.height; i++) {
+        sum += job.rows[i].enclosures;
+        count += (double)job.rows[i].points + (double)job.rows[i].escapes;
+    }
     pilot_rows_destroy(job.rows, job.height);
-    *out_enclosure = sqrt((double)sum / (GATHER_RAYS * GATHER_RAYS * (double)job.width * (double)job.height));
-    return status;
+    *out_enclosure = count > 0.0 ? sqrt(sum / count) : 1.0;
+    return status == AG_OK && run_is_cancelled(run) ? AG_CANCELLED : status;
 }

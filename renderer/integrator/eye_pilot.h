@@ -28,8 +28,9 @@ ag_status eye_pilot_look(const scene *s, run_context *run, const ag_render_setti
 void eye_pilot_reset(eye_pilot *pilot);
 
 /* Finds how much of what the picture shows is enclosed: the root of the mean, over the eye paths, of the squared share
- * of a point's gather rays that meet something; 0 for a path that comes to no point that gathers. Of the settings it
- * reads width over height, depth, light through panes and seed. Errors: AG_ERROR_MEMORY, AG_CANCELLED. */
+ * of a point's gather rays that meet something. A path that meets nothing counts as 0, and one that ends otherwise
+ * before it comes to a point that gathers not at all; 1 where none counts. Of the settings it reads width over height,
+ * depth, light through panes and seed. Errors: AG_ERROR_MEMORY, AG_CANCELLED. */
 ag_status eye_pilot_find_enclosure(const scene *s, run_context *run, const ag_render_settings *settings,
                                    double *out_enclosure);
 

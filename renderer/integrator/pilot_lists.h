@@ -30,8 +30,10 @@ typedef struct item_list {
 /* Empty where all of it is 0. */
 typedef struct pilot_row {
     item_list lists[PILOT_LIST_COUNT];
-    uint32_t importons;        /* that were traced */
-    uint64_t squared_meetings; /* sum over points of the square of how many of their gather rays met something */
+    uint32_t importons; /* that were traced */
+    uint32_t escapes;   /* eye paths that meet nothing */
+    uint32_t points;    /* that send gather rays */
+    double enclosures;  /* sum over points of the squared share of their gather rays that meet something */
 } pilot_row;
 
 /* Copies an item of the list's type to the end of the list. Where there is no memory, pilot_rows_count tells. */

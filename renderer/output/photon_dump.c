@@ -16,10 +16,8 @@ static void mark_demanded(const photon_map *map, unsigned char *first)
 {
     for (uint32_t i = 0; i < map->irradiance_photons.count; i++) {
         uint32_t word = irradiance_slot_read(photon_map_slot(map, i));
-        uint32_t photon_index =
-            photon_map_all_have_irradiance(map) ? i : irradiance_photons_source(&map->irradiance_photons, i);
-        if (irradiance_word_is_ready(word) && photon_index < map->set.count)
-            first[(size_t)photon_index * RECORD_BYTES] = 1;
+        if (irradiance_word_is_ready(word))
+            first[(size_t)photon_map_index(map, i) * RECORD_BYTES] = 1;
     }
 }
 

@@ -195,12 +195,56 @@ static void kernels_write_the_same(void **state)
     test_run_reset(&r);
 }
 
+/* Nodes in a file that is overwritten may be anything: ways down still end at leaves that the tree's depth allows. */
+static void nodes_may_hold_anything(void **state)
+{
+    (void)state;
+    static photon_lookup lookups[POINTS];
+    static lookup_visits from, to;
+    test_run r;
+    test_run_init(&r, 2);
+    photon *photons;
+    photon_tree tree = make_tree(&r, BALL, &photons);
+    make_lookups(&tree, 3, lookups);
+    rng random = test_random(5);
+    lookup_columns points;
+    for (uint32_t i = 0; i < PHOTON_LOOKUPS_MAX; i++) {
+        vec3 at = lookups[i].position;
+        points.column[0][i] = at.x, points.column[1][i] = at.y, points.column[2][i] = at.z;
+        points.column[LOOKUP_REACH_SQUARED][i] = 0.02f * rng_float(&random);
+    }
+    for (uint32_t node = 0; node < (1u << tree.depth) - 1; node++)
+        tree.nodes[node] = (photon_tree_node){rng_float(&random) - 0.5f, (uint32_t)rng_next(&random)};
+    const lookup_kernels *const both[] = {&lookup_kernels_plain, wide};
+    for (int k = 0; k < 2; k++) {
+        uint32_t leaves[PHOTON_LOOKUPS_MAX];
+        both[k]->find_leaves(&tree, &lookups[0].position.x, sizeof *lookups / sizeof(float), PHOTON_LOOKUPS_MAX,
+                             leaves);
+        for (uint32_t i = 0; i < PHOTON_LOOKUPS_MAX; i++)
+            assert_true(leaves[i] < 1u << tree.depth);
+        from = (lookup_visits){.count = PHOTON_LOOKUPS_MAX};
+        for (uint32_t i = 0; i < PHOTON_LOOKUPS_MAX; i++)
+            from.lookup[i] = i;
+        for (uint32_t level = 0; level < tree.depth && from.count <= LOOKUP_VISITS_MAX; level++) {
+            both[k]->descend(&tree, &points, &from, &to);
+            assert_true(to.count >= from.count && to.count <= 2 * from.count);
+            for (uint32_t i = 0; i < to.count; i++)
+                assert_true(to.node[i] >= (2u << level) - 1 && to.node[i] < (4u << level) - 1);
+            from = to;
+        }
+    }
+    photon_tree_reset(&tree);
+    free(photons);
+    test_run_reset(&r);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(many_find_what_each_finds_alone),
         cmocka_unit_test(leaves_are_those_of_each_alone),
         cmocka_unit_test(kernels_write_the_same),
+        cmocka_unit_test(nodes_may_hold_anything),
     };
     const lookup_kernels *const all[] = {lookup_kernels_avx2(), lookup_kernels_avx512()};
     static const char *const NAMES[] = {"AVX2", "AVX-512"};

@@ -239,6 +239,8 @@ static double enclosure(test_run *r, const char *world)
     return found;
 }
 
+#define PLATE "Shape \"bilinearmesh\" \"point3 P\" [-9 -9 2  9 -9 2  -9 9 2  9 9 2]\n"
+
 /* A plate in front of the camera and, far behind it, a disc whose radius is its distance, so that its form factor is a
  * half: of eight gather rays the square of the share that meets it is (1/2)^2 + 1/32 on average if they are
  * independent, and no less than (1/2)^2. */
@@ -247,7 +249,6 @@ static void a_view_is_enclosed_by_what_its_gather_rays_meet(void **state)
     (void)state;
     test_run r;
     test_run_init(&r, 2);
-#define PLATE "Shape \"bilinearmesh\" \"point3 P\" [-9 -9 2  9 -9 2  -9 9 2  9 9 2]\n"
     assert_close(enclosure(&r, ROOM WINDOW), 1.0, 1e-9);
     assert_close(enclosure(&r, PLATE), 0.0, 1e-9);
     double half = enclosure(&r, PLATE "Translate 0 0 -1998 Shape \"disk\" \"float radius\" [2000]\n");

@@ -75,9 +75,10 @@ typedef struct ag_render_settings {
 
     uint64_t photon_count; /* photons to store in the global map, [1, 2^32 - 2]. Default AG_PHOTON_COUNT_AUTOMATIC:
                               two for each camera sample of the whole frame (with a level of noise, for each of the
-                              noise_min_samples at most), from 131072 to AG_DEFAULT_PHOTONS_MOST, and fewer in the
-                              open, where few gather rays meet anything; that most with a photon_map_file or
-                              photon_paths, whose photons are not of one picture alone */
+                              noise_min_samples at most), from 131072 to AG_DEFAULT_PHOTONS_MOST, and in small
+                              pictures of open views fewer, down to 16384, by how many gather rays meet anything
+                              (which depends on the camera, so that frames may differ); that most with a photon_map_file
+                              or photon_paths, whose photons are not of one picture alone */
     uint64_t photon_paths; /* light paths that the photons of the global map come from, [0, 10^15]; 0, the default: as
                               many as it takes to store photon_count photons. A fixed number is for the frames of an
                               animation: a path that meets nothing new then has the same photons in each frame, and

@@ -39,7 +39,8 @@ typedef struct ag_prediction {
 /* Tells predictions how many bytes the host will allocate itself beside a rendering, for instance to show it, and has
  * not allocated yet; 0 at first. */
 AG_API void ag_context_expect_host_memory(ag_context *context, uint64_t bytes);
-/* Predicts memory alone, without rendering anything; to be called before ag_render. struct_size: of the program's
+/* Predicts memory alone, without rendering anything but, for the default number of photons, a few thousand rays; to be
+ * called before ag_render. struct_size: of the program's
  * ag_prediction. Errors: those of ag_render. */
 AG_API ag_status ag_predict_memory_fill(ag_context *context, const ag_scene *scene, const ag_render_settings *settings,
                                         void *out_prediction, size_t struct_size);
