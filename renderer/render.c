@@ -147,8 +147,7 @@ ag_status rendering_settle(ag_context *context, const scene *s, const ag_render_
     if (out_settings->caustic_photon_count == AG_PHOTON_COUNT_AUTOMATIC)
         out_settings->caustic_photon_count = automatic_photon_count(out_settings) / 2;
     if (out_settings->photon_aim == AG_PHOTON_AIM_AUTOMATIC)
-        out_settings->photon_aim =
-            out_settings->photon_map_file || out_settings->photon_paths > 0 ? 0.0f : AG_DEFAULT_PHOTON_AIM;
+        out_settings->photon_aim = has_map_of_its_own(out_settings) ? AG_DEFAULT_PHOTON_AIM : 0.0f;
     if (out_settings->gather_guiding == AG_GATHER_GUIDING_AUTOMATIC)
         out_settings->gather_guiding = out_settings->photon_paths > 0 ? 0.0f : AG_DEFAULT_GATHER_GUIDING;
     const integrator *kind = integrator_of(out_settings->integrator);

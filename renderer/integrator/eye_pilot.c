@@ -39,13 +39,13 @@ static void add_importon(pilot_row *row, pilot_list which, vec3 position, vec3 n
 }
 
 /* What eye paths look for. */
-typedef enum pilot_aim { PILOT_AIM_REQUESTS, PILOT_AIM_LIT, PILOT_AIM_ENCLOSURE } pilot_aim;
+typedef enum pilot_goal { PILOT_GOAL_REQUESTS, PILOT_GOAL_LIT, PILOT_GOAL_ENCLOSURE } pilot_goal;
 
 typedef struct pilot_job {
     transport t;
     int width, height; /* of the grid */
     float aspect;
-    pilot_aim aim;
+    pilot_goal goal;
     pilot_row *rows; /* [height] */
 } pilot_job;
 
@@ -197,7 +197,7 @@ static bool note_vertex(const pilot_job *job, eye_worker *worker, const vertex *
 {
     const transport *t = &job->t;
     const bool gathers = bsdf_has(&v->scattering, BSDF_GATHERED);
-    if (job->aim == PILOT_AIM_LIT) {
+    if (job->goal == PILOT_GOAL_LIT) {
         if (bsdf_is_sampled_from_light(&v->scattering, BSDF_ALL))
             pilot_row_add(
                 out, PILOT_LIT,
@@ -206,7 +206,7 @@ static bool note_vertex(const pilot_job *job, eye_worker *worker, const vertex *
     }
     if (!gathers)
         return false;
-    if (job->aim == PILOT_AIM_ENCLOSURE) {
+    if (job->goal == PILOT_GOAL_ENCLOSURE) {
         note_enclosure(t, worker, v, where, path->vertex, out);
         return true;
     }
@@ -366,7 +366,7 @@ void eye_pilot_reset(eye_pilot *pilot)
 ag_status eye_pilot_find_lit(const scene *s, run_context *run, const ag_render_settings *settings,
                              lit_point **out_points, uint32_t *out_count)
 {
-    pilot_job job = {.t = {.s = s, .run = run}, .aim = PILOT_AIM_LIT};
+    pilot_job job = {.t = {.s = s, .run = run}, .goal = PILOT_GOAL_LIT};
     void *points = NULL;
     ag_status status = look_over_frame(&job, run, LIT_PATHS, settings);
     if (status == AG_OK)
@@ -379,7 +379,7 @@ ag_status eye_pilot_find_lit(const scene *s, run_context *run, const ag_render_s
 ag_status eye_pilot_find_enclosure(const scene *s, run_context *run, const ag_render_settings *settings,
                                    double *out_enclosure)
 {
-    pilot_job job = {.t = {.s = s, .run = run}, .aim = PILOT_AIM_ENCLOSURE};
+    pilot_job job = {.t = {.s = s, .run = run}, .goal = PILOT_GOAL_ENCLOSURE};
     ag_status status = look_over_frame(&job, run, ENCLOSURE_PATHS, settings);
     double sum = 0.0, count = 0.0;
     for (int i = 0; status == AG_OK && i < job.height; i++) {
