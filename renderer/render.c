@@ -88,7 +88,7 @@ static transport make_transport(ag_context *context, const scene *s, const ag_re
 /* Few samples do not show what many photons are for, and tracing these would be most of the work: in three interiors
  * at a sample or four of 57,600 pixels, error times CPU time is least at one to four photons for each sample. With a
  * level of noise, most pixels of such rooms end at the least number of samples. */
-enum { PHOTONS_PER_SAMPLE = 2, PHOTONS_LEAST = 131072, PHOTONS_IN_THE_OPEN_LEAST = 16384 };
+enum { PHOTONS_PER_SAMPLE = 2, PHOTONS_LEAST = 131072 };
 
 /* The map of one picture alone is made for its samples. */
 static bool has_map_of_its_own(const ag_render_settings *settings)
@@ -117,7 +117,7 @@ static uint64_t automatic_photon_count(const ag_render_settings *settings)
  * are most of the time, fewer than a room; in large ones as many, by the root of the samples, since the product of an
  * error of a + b / photons and a time of c samples + d photons is least so. The factor, like the least number, is one
  * with which a few open scenes of 160 x 120 pixels are near their best (perf/pictures.md). */
-static const double PHOTONS_PER_ROOT = 1400.0, ROOM_LEAST = 0.8;
+static const double PHOTONS_PER_ROOT = 1400.0, ROOM_LEAST = 0.8, PHOTONS_IN_THE_OPEN_LEAST = 16384.0;
 
 static ag_status take_fewer_in_the_open(ag_context *context, const scene *s, ag_render_settings *in_out_settings)
 {

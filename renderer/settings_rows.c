@@ -170,17 +170,15 @@ static const setting_row ROWS[] = {
      .noun = "depth",
      .json = "settings.max_depth",
      .marks = SETTING_OF_PICTURE | SETTING_IN_HEADER},
-    {.text =
-         {.name = "photons",
-          .argument = "N",
-          .section = "Light",
-          .help = "photons to store in the global map (default: by the number of samples, 1000000 at most)",
-          .manual =
-              "Photons to store in the global map. The default is two for each camera sample of the whole "
-              "frame, from 131072 to 1000000; with *--noise* for each of those of *--min-spp*. Small "
-              "pictures of open views, where few gather rays meet anything, have fewer, from 16384 on. With *--photon-map* "
-              "or *--photon-paths* it is 1000000. May be written as 2e6.",
-          .is_of_photon_map = true},
+    {.text = {.name = "photons",
+              .argument = "N",
+              .section = "Light",
+              .help = "photons to store in the global map (default: by the number of samples, 1000000 at most)",
+              .manual = "Photons to store in the global map. The default is two for each camera sample of the whole "
+                        "frame, from 131072 to 1000000; with *--noise* for each of those of *--min-spp*. Small "
+                        "pictures of open views, where few gather rays meet anything, have fewer, from 16384 on. "
+                        "With *--photon-map* or *--photon-paths* it is 1000000. May be written as 2e6.",
+              .is_of_photon_map = true},
      FIELD(photon_count),
      .kind = SETTING_COUNT,
      .initial = (double)AG_PHOTON_COUNT_AUTOMATIC,

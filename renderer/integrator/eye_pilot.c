@@ -38,7 +38,8 @@ static void add_importon(pilot_row *row, pilot_list which, vec3 position, vec3 n
     pilot_row_add(row, which, &p);
 }
 
-/* What eye paths look for. */
+/* The eye paths of a pilot look for one of these: where the picture asks the maps for light, points of direct light, or
+ * how much of the view is enclosed. */
 typedef enum pilot_goal { PILOT_GOAL_REQUESTS, PILOT_GOAL_LIT, PILOT_GOAL_ENCLOSURE } pilot_goal;
 
 typedef struct pilot_job {

@@ -140,6 +140,19 @@ static void leaves_are_those_of_each_alone(void **state)
     test_run_reset(&r);
 }
 
+/* Returns some of the lookups' points as columns, a fifth of them without a reach. */
+static lookup_columns points_of(const photon_lookup lookups[POINTS])
+{
+    lookup_columns points;
+    rng random = test_random(4);
+    for (uint32_t i = 0; i < PHOTON_LOOKUPS_MAX; i++) {
+        vec3 at = lookups[30 * i].position;
+        points.column[0][i] = at.x, points.column[1][i] = at.y, points.column[2][i] = at.z;
+        points.column[LOOKUP_REACH_SQUARED][i] = i % 5 ? 0.02f * rng_float(&random) : -1.0f;
+    }
+    return points;
+}
+
 /* Each step by itself, in order: what the plain kernels write is what the others write. */
 static void kernels_write_the_same(void **state)
 {
@@ -153,13 +166,7 @@ static void kernels_write_the_same(void **state)
     photon *photons;
     photon_tree tree = make_tree(&r, BALL, &photons);
     make_lookups(&tree, 3, lookups);
-    lookup_columns points;
-    rng random = test_random(4);
-    for (uint32_t i = 0; i < PHOTON_LOOKUPS_MAX; i++) {
-        vec3 at = lookups[30 * i].position;
-        points.column[0][i] = at.x, points.column[1][i] = at.y, points.column[2][i] = at.z;
-        points.column[LOOKUP_REACH_SQUARED][i] = i % 5 ? 0.02f * rng_float(&random) : -1.0f;
-    }
+    lookup_columns points = points_of(lookups);
     for (uint32_t node = 0; node < (1u << tree.depth) - 1; node++)
         assert_true(plain->meet_plane(&points, tree.nodes[node]) == wide->meet_plane(&points, tree.nodes[node]));
     from.count = 0;
@@ -207,12 +214,7 @@ static void nodes_may_hold_anything(void **state)
     photon_tree tree = make_tree(&r, BALL, &photons);
     make_lookups(&tree, 3, lookups);
     rng random = test_random(5);
-    lookup_columns points;
-    for (uint32_t i = 0; i < PHOTON_LOOKUPS_MAX; i++) {
-        vec3 at = lookups[i].position;
-        points.column[0][i] = at.x, points.column[1][i] = at.y, points.column[2][i] = at.z;
-        points.column[LOOKUP_REACH_SQUARED][i] = 0.02f * rng_float(&random);
-    }
+    lookup_columns points = points_of(lookups);
     for (uint32_t node = 0; node < (1u << tree.depth) - 1; node++)
         tree.nodes[node] = (photon_tree_node){rng_float(&random) - 0.5f, (uint32_t)rng_next(&random)};
     const lookup_kernels *const both[] = {&lookup_kernels_plain, wide};

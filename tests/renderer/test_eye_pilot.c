@@ -227,7 +227,7 @@ static void bright_paths_are_split_and_led(void **state)
     test_run_reset(&r);
 }
 
-/* What is enclosed of a view, from the origin along z. */
+/* Returns how much of a view is enclosed, seen from the origin along z. */
 static double enclosure(test_run *r, const char *world)
 {
     scene *s = scene_of(r, world);
