@@ -69,7 +69,7 @@ static transport make_transport(ag_context *context, const scene *s, const ag_re
         .s = s,
         .run = &context->run,
         .settings = settings,
-        .split = sample_split_first(settings),
+        .split = sample_split_first(settings, integrator_of(settings->integrator)->splits_samples),
         .ray_bits = sampler_bits(sample_split_most(settings, integrator_of(settings->integrator)->splits_samples).rays),
         .layout = layout,
         .wants_layers = layout->needs_layers,

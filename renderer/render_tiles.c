@@ -13,6 +13,9 @@
 
 enum { TILE_SIZE = 32 };
 
+/* Tells the sequences of further camera rays from those of samples. */
+static const uint32_t FURTHER_KEY = 0x66757274u;
+
 /* --- workers --- */
 
 void eye_workers_destroy(eye_worker *workers, unsigned count)
@@ -74,6 +77,49 @@ typedef struct tile_job {
     double progress_begin, progress_end; /* of the phase, before and after this pass */
 } tile_job;
 
+/* Returns the camera sample that these random numbers choose in a pixel, without its split and number. */
+static camera_sample make_camera_sample(const tile_job *job, const sampler *where, int x, int y, int *out_sign,
+                                        film_point *out_on_film)
+{
+    const transport *t = job->t;
+    const ag_render_settings *settings = t->settings;
+    vec2 offset = pixel_filter_sample(&job->film->filter, sampler_2d(where, SAMPLE_PIXEL, 0), out_sign);
+    vec2 lens = t->s->hints.disable_pixel_jitter ? (vec2){0.5f, 0.5f} : sampler_2d(where, SAMPLE_LENS, 0);
+    float time = !t->s->has_motion                  ? 0.0f
+                 : t->s->hints.disable_pixel_jitter ? 0.5f
+                                                    : sampler_2d(where, SAMPLE_TIME, 0).x;
+    float width = (float)settings->width, height = (float)settings->height;
+    film_point p = {((float)x + 0.5f + offset.x) / width, ((float)y + 0.5f + offset.y) / height, job->aspect, lens,
+                    time};
+    camera_sample from = {.ray = camera_generate_ray(&t->s->camera, p.film_x, p.film_y, p.aspect, lens, time),
+                          .where = *where};
+    if (t->pixel_share > 0.0f)
+        from.ray.cone = camera_ray_cone(&t->s->camera, &from.ray, p.film_x, p.film_y, t->pixel_share / width,
+                                        t->pixel_share / height, p.aspect, lens);
+    *out_on_film = p;
+    return from;
+}
+
+/* Adds the further camera rays of a sample, which run through sequences of their own. */
+static void add_further(const tile_job *job, eye_worker *worker, int x, int y, const camera_sample *own,
+                        eye_sample *out)
+{
+    const uint32_t light_cost = out->light_cost, bits = sampler_bits(own->split.further);
+    const sampler apart = sampler_apart(&own->where, FURTHER_KEY + bits);
+    uint64_t cost_before = eye_worker_cost(worker);
+    for (uint32_t i = 0; i < own->split.further; i++) {
+        int sign; /* always 1: filters with negative lobes have no further camera rays */
+        film_point on_film;
+        const sampler where = sampler_branch(&apart, bits, i);
+        camera_sample from = make_camera_sample(job, &where, x, y, &sign, &on_film);
+        from.split = own->split;
+        from.number = own->number;
+        from.is_further = true;
+        job->kind->sample(job->t, worker, &from, out);
+    }
+    out->further_cost = (uint32_t)(eye_worker_cost(worker) - cost_before) - (out->light_cost - light_cost);
+}
+
 /* The sample of that index of a pixel, of that number in the worker's queue: all but the gathered light, which the
  * worker's batch brings later. */
 static void render_sample(const tile_job *job, eye_worker *worker, int x, int y, uint32_t index, uint32_t number,
@@ -81,29 +127,20 @@ static void render_sample(const tile_job *job, eye_worker *worker, int x, int y,
 {
     const transport *t = job->t;
     const ag_render_settings *settings = t->settings;
-    sampler where = sampler_make(settings->seed, x, y, index, sampler_bits((uint32_t)settings->samples_per_pixel));
-    vec2 offset = pixel_filter_sample(&job->film->filter, sampler_2d(&where, SAMPLE_PIXEL, 0), &out->sign);
-    vec2 lens = t->s->hints.disable_pixel_jitter ? (vec2){0.5f, 0.5f} : sampler_2d(&where, SAMPLE_LENS, 0);
-    float time = !t->s->has_motion                  ? 0.0f
-                 : t->s->hints.disable_pixel_jitter ? 0.5f
-                                                    : sampler_2d(&where, SAMPLE_TIME, 0).x;
-    float width = (float)settings->width, height = (float)settings->height;
-    film_point on_film = {((float)x + 0.5f + offset.x) / width, ((float)y + 0.5f + offset.y) / height, job->aspect,
-                          lens, time};
-    camera_sample from = {
-        .ray = camera_generate_ray(&t->s->camera, on_film.film_x, on_film.film_y, on_film.aspect, lens, time),
-        .where = where,
-        .split = split,
-        .number = number};
-    if (t->pixel_share > 0.0f)
-        from.ray.cone = camera_ray_cone(&t->s->camera, &from.ray, on_film.film_x, on_film.film_y,
-                                        t->pixel_share / width, t->pixel_share / height, on_film.aspect, lens);
+    const sampler where =
+        sampler_make(settings->seed, x, y, index, sampler_bits((uint32_t)settings->samples_per_pixel));
+    film_point on_film;
+    camera_sample from = make_camera_sample(job, &where, x, y, &out->sign, &on_film);
+    from.split = split;
+    from.number = number;
     out->most_direct = settings->clamp_direct > 0.0f ? settings->clamp_direct : INFINITY;
     out->most_indirect = settings->clamp_indirect > 0.0f ? settings->clamp_indirect : INFINITY;
     uint64_t cost_before = eye_worker_cost(worker);
     job->kind->sample(t, worker, &from, out);
     out->rest_cost =
         (uint32_t)(eye_worker_cost(worker) - cost_before) - out->gather_cost - out->light_cost - out->caustic_cost;
+    if (split.further > 0)
+        add_further(job, worker, x, y, &from, out);
     if (out->layers && t->layout->needs_first_hit)
         first_hit_project(t, &on_film, &out->layers->first);
 }

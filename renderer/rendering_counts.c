@@ -10,7 +10,7 @@ void rendering_count_rays(ag_rendering *r)
     uint64_t cut = 0;
     for (unsigned i = 0; i < statistics->threads; i++) {
         eye_worker *w = &r->workers[i];
-        statistics->rays_camera += w->rays_camera;
+        statistics->rays_camera += w->rays_camera + w->rays_further;
         statistics->rays_shadow += w->rays_shadow;
         statistics->rays_gather += w->rays_gather;
         statistics->rays_path += w->rays_path;
@@ -19,7 +19,7 @@ void rendering_count_rays(ag_rendering *r)
         r->camera_rays_met += w->camera_rays_met;
         statistics->samples_not_finite += w->samples_not_finite;
         cut += w->rays_cut;
-        w->rays_camera = w->rays_shadow = w->rays_gather = w->rays_path = w->rays_estimate = 0;
+        w->rays_camera = w->rays_further = w->rays_shadow = w->rays_gather = w->rays_path = w->rays_estimate = 0;
         w->camera_rays_met = w->samples_not_finite = w->rays_cut = 0;
     }
     transmittance_warn_of_cut(r->context->log, cut);

@@ -6,7 +6,8 @@
 #include "status.h"
 
 /* Of the small picture: pixels of its longer side, samples of each pixel, and how each is split. */
-enum { SIDE = 64, SAMPLES = 4, RAYS = 8, LIGHTS = 8 };
+enum { SIDE = 64, SAMPLES = 4, RAYS = 8 };
+static const split_counts SPLIT = {.rays = RAYS, .lights = 8};
 /* The sampler's key is apart from the picture's own. */
 static const uint64_t PILOT_SEED = 0x73706c6974u;
 
@@ -34,7 +35,7 @@ static ag_status create_film(ag_rendering *pilot)
     ag_film *film = pilot->film;
     film->filter.radius[0] = film->filter.radius[1] = 0.0f; /* splitting.h says why */
     for (size_t i = 0; i < film_area_count(film); i++)
-        film->splits[i].counts = (split_counts){.rays = RAYS, .lights = LIGHTS};
+        film->splits[i].counts = SPLIT;
     return AG_OK;
 }
 
@@ -42,8 +43,9 @@ static ag_status create_film(ag_rendering *pilot)
 static void count_camera_rays_apart(eye_worker *workers, unsigned count)
 {
     for (unsigned i = 0; i < count; i++) {
-        workers[i].rays_path += workers[i].rays_camera;
-        workers[i].rays_camera = workers[i].camera_rays_met = workers[i].samples_not_finite = 0;
+        workers[i].rays_path += workers[i].rays_camera + workers[i].rays_further;
+        workers[i].rays_camera = workers[i].rays_further = workers[i].camera_rays_met = workers[i].samples_not_finite =
+            0;
     }
 }
 
@@ -77,7 +79,7 @@ ag_status split_pilot_run(ag_rendering *r)
     pilot.t.settings = &pilot.settings;
     pilot.t.layout = &pilot.film->layout;
     pilot.t.wants_layers = pilot.t.wants_groups = false;
-    pilot.t.split = (split_counts){.rays = RAYS, .lights = LIGHTS};
+    pilot.t.split = SPLIT;
     pilot.t.ray_bits = sampler_bits(RAYS);
     pilot.t.pixel_share *= scale;
     ag_status status = render_tiles(&pilot, SAMPLES);

@@ -57,24 +57,31 @@ typedef struct sample_layers {
     first_hit first;
 } sample_layers;
 
-/* The number of inner samples that a camera sample is split into: rays, lights >= 1. */
+/* The numbers that a camera sample is split into. */
 typedef struct split_counts {
-    uint32_t rays;         /* gather rays */
-    uint32_t lights;       /* samples towards lamps where its ray meets a diffuse surface first */
+    uint32_t rays;         /* gather rays, >= 1 */
+    uint32_t further;      /* camera rays beside the sample's own, 0 or a power of two. Gathered light and caustics,
+                              which cost most, come by the own one alone, as does what it meets first (first_hit); of
+                              all other light each brings an equal share */
+    uint32_t lights;       /* samples towards lamps, >= 1, where a camera ray meets a diffuse surface first */
     uint32_t caustic_bits; /* of 2^caustic_bits camera samples one asks the caustic map, by chance */
     uint32_t ray_shift; /* added, modulo 2^32, to the sample's number where its gather rays are numbered, so that those
                            of a pixel follow each other whatever the numbers were before; see sampler_shifted */
 } split_counts;
+
+static inline uint32_t split_camera_rays(split_counts counts) { return 1 + counts.further; }
 
 typedef struct eye_sample {
     rgb radiance;
     float most_direct, most_indirect; /* of a component of one contribution, INFINITY: unbounded */
     int sign;                         /* of the pixel filter there */
     float gather_variance;            /* of the mean of the three colours, by the choice of gather rays: an estimate */
-    float light_variance; /* of that mean by the choice of light samples, where the ray met a surface first */
+    float light_variance; /* of that mean by the choice of light samples, where camera rays met a surface first */
     float caustic_square; /* of the same mean of the caustics that were asked for, times the chance of asking by
                              caustic_bits: the sum of the squares */
+    float own;            /* that mean of gathered light and caustics, which the sample's own camera ray alone brings */
     uint32_t gather_cost, light_cost, caustic_cost; /* of those: see eye_worker_cost */
+    uint32_t further_cost;                          /* of the further camera rays, but for their light samples */
     uint32_t rest_cost;                             /* of all else */
     sample_layers *layers;                          /* NULL: radiance alone is asked for */
 } eye_sample;

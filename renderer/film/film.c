@@ -152,13 +152,20 @@ int film_planes(ag_film *film, film_plane out_planes[FILM_PLANES_MAX])
     return count;
 }
 
+split_counts film_first_split(const ag_film *film, const ag_render_settings *settings)
+{
+    split_counts first = sample_split_first(settings, true);
+    first.further = film_further(film, first.further);
+    return first;
+}
+
 void film_set_first_splits(struct ag_film *film, const ag_render_settings *settings)
 {
     const film_area *all = &film->area;
     for (int y = all->y0; film->splits && y < all->y0 + all->height; y++)
         for (int x = all->x0; x < all->x0 + all->width; x++)
             film->splits[film_pixel_at(film, x, y)].counts =
-                film->prior.first ? film->prior.first[film_block_number(film, x, y)] : sample_split_first(settings);
+                film->prior.first ? film->prior.first[film_block_number(film, x, y)] : film_first_split(film, settings);
 }
 
 void film_clear(ag_film *film, const ag_render_settings *settings)

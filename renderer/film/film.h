@@ -102,6 +102,16 @@ static inline size_t film_pixel_of_crop(const struct ag_film *film, size_t pixel
     return film_pixel_at(film, film->x0 + (int)(pixel % width), film->y0 + (int)(pixel / width));
 }
 
+/* Returns how many further camera rays samples may have, of so many: none where they have signs by the filter, since
+ * each camera ray would have its own. */
+static inline uint32_t film_further(const struct ag_film *film, uint32_t further)
+{
+    return film->filter.has_signs ? 0 : further;
+}
+
+/* Returns how the first samples are split where nothing is known of the picture. */
+split_counts film_first_split(const struct ag_film *film, const ag_render_settings *settings);
+
 /* Sets how the first samples of all pixels are split; does nothing where blocks do not choose. */
 void film_set_first_splits(struct ag_film *film, const ag_render_settings *settings);
 

@@ -9,8 +9,9 @@
 /* The split is decided again each time that there are so many times as many samples. */
 enum { BARRIER_STEP = 4 };
 
-/* Light samples of the first camera samples, at least: the pilot may have looked past small things. */
-enum { FIRST_LIGHTS_MIN = 4 };
+/* Light samples of the first camera samples, at least: the pilot may have looked past small things. Where blocks choose
+ * later, also of each of their camera rays: from one the variance cannot be told. */
+enum { FIRST_LIGHTS_MIN = 4, FIRST_LIGHTS_OF_RAY_MIN = 2 };
 
 /* A fixed number of camera samples needs no standard error (noise.h) of the frame below this, which nobody sees. */
 static const double FIXED_CLEAN = 0.003;
@@ -32,25 +33,39 @@ static const double SQRT_2 = 1.4142135623730951;
 
 /* The number of a block's pixels, and sums over them: of variances of one sample, as shown, and of its costs. */
 typedef struct block_sums {
-    double pixels, all, by_parts, by_ray, by_light, caustic;
-    double cost_of_ray, cost_of_light, cost_of_caustic, cost_of_rest;
+    double pixels, all, own, by_parts; /* own: of light that the samples' own camera rays alone bring */
+    double by_ray, by_light, by_camera_ray, caustic;
+    double cost_of_ray, cost_of_light, cost_of_caustic, cost_of_further, cost_of_rest;
 } block_sums;
+
+/* Returns the variance of a sum over samples. */
+static double variance_of(float sum, float squares, double count)
+{
+    return fmax((double)squares - (double)sum * (double)sum / count, 0.0) / (count - 1.0);
+}
 
 /* Adds a pixel that has had so many samples, two or more. scale: from radiance to what is shown. */
 static void add_pixel(const split_sums *pixel, double count, double scale, block_sums *sums)
 {
     double mean = (double)pixel->value / count, lights_known = (double)pixel->lights_known;
-    double variance = fmax((double)pixel->square - (double)pixel->value * mean, 0.0) / (count - 1.0);
+    double variance = variance_of(pixel->value, pixel->square, count);
+    double own = variance_of(pixel->own, pixel->own_square, count);
+    double by_light = lights_known > 0.0 ? (double)pixel->by_light / lights_known : 0.0;
     double weight = noise_shown_variance(scale * mean, scale * scale);
+    /* not cut at 0 here, since variances of few samples differ by chance */
+    double shared = variance - own - by_light * (double)pixel->per_light / count;
     sums->pixels += 1.0;
     sums->all += weight * variance;
+    sums->own += weight * own;
     sums->by_parts += weight * (double)pixel->by_parts / count;
     sums->by_ray += weight * (double)pixel->by_ray / count;
-    sums->by_light += lights_known > 0.0 ? weight * (double)pixel->by_light / lights_known : 0.0;
+    sums->by_light += weight * by_light;
+    sums->by_camera_ray += weight * shared * count / (double)pixel->per_camera_ray;
     sums->caustic += weight * (double)pixel->caustic / count;
     sums->cost_of_ray += (double)pixel->cost_of_ray / count;
     sums->cost_of_light += (double)pixel->cost_of_light / count;
     sums->cost_of_caustic += (double)pixel->cost_of_caustic / count;
+    sums->cost_of_further += (double)pixel->cost_of_further / count;
     sums->cost_of_rest += (double)pixel->cost_of_rest / count;
 }
 
@@ -58,6 +73,8 @@ static void add_pixel(const split_sums *pixel, double count, double scale, block
 typedef struct choice {
     double scale; /* from radiance to what is shown */
     split_counts least, most;
+    uint32_t least_lights; /* of all camera rays */
+    double uneven;         /* the share of variance by camera rays that is left in the mean of a pixel's samples */
 } choice;
 
 /* Variance and cost of camera samples without the parts that are chosen, summed over the block. */
@@ -65,10 +82,13 @@ typedef struct camera_part {
     double variance, cost;
 } camera_part;
 
-/* caustics: how many times their mean square is in the variance, beyond that of caustics which are always asked for. */
-static camera_part camera_part_of(const block_sums *sums, double caustics, double cost)
+/* caustics: how many times their mean square is in the variance, beyond that of caustics which are always asked for.
+ * cost: of all but the camera rays beyond one. */
+static camera_part camera_part_of(const block_sums *sums, double caustics, double cost, double camera_rays)
 {
-    return (camera_part){fmax(sums->all - sums->by_parts + caustics * sums->caustic, LEAST_REST * sums->all), cost};
+    double own = fmax(sums->own - sums->by_parts + caustics * sums->caustic, 0.0);
+    double variance = own + fmax(sums->by_camera_ray, 0.0) / camera_rays;
+    return (camera_part){fmax(variance, LEAST_REST * sums->all), cost + sums->cost_of_further * (camera_rays - 1.0)};
 }
 
 static double cost_per_variance_of(camera_part part) { return part.variance > 0.0 ? part.cost / part.variance : 0.0; }
@@ -98,42 +118,119 @@ static uint32_t best_caustic_bits(double wanted, uint32_t most)
     return bits;
 }
 
-static uint32_t wanted_caustic_bits(double cost_per_variance, const block_sums *sums, const choice *c)
+static double wanted_camera_rays(double cost_per_variance, const block_sums *sums)
 {
-    return best_caustic_bits(wanted_count(cost_per_variance, sums->caustic, sums->cost_of_caustic),
-                             c->most.caustic_bits);
+    return wanted_count(cost_per_variance, fmax(sums->by_camera_ray, 0.0), sums->cost_of_further);
 }
 
-static split_counts counts_at(double cost_per_variance, uint32_t caustic_bits, const block_sums *sums, const choice *c)
+/* Returns the next larger number of further camera rays. */
+static uint32_t more_further(uint32_t further) { return further > 0 ? 2 * further : 1; }
+
+/* Returns the number of further camera rays with which all camera rays are nearest by ratio to the number that is
+ * wanted, within bounds. */
+static uint32_t best_further(double wanted, uint32_t least, uint32_t most)
 {
-    return (split_counts){.caustic_bits = caustic_bits,
-                          .rays = best_count(wanted_count(cost_per_variance, sums->by_ray, sums->cost_of_ray),
-                                             c->least.rays, c->most.rays),
-                          .lights = best_count(wanted_count(cost_per_variance, sums->by_light, sums->cost_of_light),
-                                               c->least.lights, c->most.lights)};
+    uint32_t further = least;
+    for (uint32_t next = more_further(further);
+         next <= most && wanted * wanted > (1.0 + (double)further) * (1.0 + (double)next); next = more_further(next))
+        further = next;
+    return further;
 }
 
-/* Returns what is best for a block that goes on until it is quiet enough, whatever others do. */
+/* Returns the least number of light samples of each of so many camera rays. */
+static uint32_t least_lights_of_ray(const choice *c, uint32_t camera_rays)
+{
+    uint32_t lights = c->least.lights;
+    while (lights * camera_rays < c->least_lights)
+        lights *= 2;
+    return lights;
+}
+
+/* Returns the number of light samples of each camera ray, a power of two, for so many of all of them. */
+static uint32_t lights_of_ray(double wanted, uint32_t further, const choice *c)
+{
+    return best_count(wanted / (1.0 + (double)further), least_lights_of_ray(c, 1 + further), c->most.lights);
+}
+
+static split_counts counts_at(double cost_per_variance, uint32_t further, const block_sums *sums, const choice *c)
+{
+    double rays = wanted_count(cost_per_variance, sums->by_ray, sums->cost_of_ray);
+    double lights = wanted_count(cost_per_variance, sums->by_light, sums->cost_of_light);
+    double caustics = wanted_count(cost_per_variance, sums->caustic, sums->cost_of_caustic);
+    return (split_counts){.further = further,
+                          .caustic_bits = best_caustic_bits(caustics, c->most.caustic_bits),
+                          .rays = best_count(rays, c->least.rays, c->most.rays),
+                          .lights = lights_of_ray(lights, further, c)};
+}
+
+/* Variance and cost of a camera sample that is split by these counts. */
+static camera_part split_by(const block_sums *sums, const split_counts *counts)
+{
+    const double rays = (double)counts->rays, camera_rays = (double)split_camera_rays(*counts);
+    const double lights = (double)counts->lights * camera_rays;
+    const double asked = (double)(1u << counts->caustic_bits); /* so many samples share an estimate of caustics */
+    camera_part part =
+        camera_part_of(sums, asked - 1.0, sums->cost_of_rest + sums->cost_of_caustic / asked, camera_rays);
+    part.variance += sums->by_ray / rays + sums->by_light / lights;
+    part.cost += sums->cost_of_ray * rays + sums->cost_of_light * lights;
+    return part;
+}
+
+/* Returns what is best with one camera ray for a block that goes on until it is quiet enough, whatever others do. */
+static split_counts best_with_one_ray(const block_sums *sums, const choice *c)
+{
+    camera_part rest = camera_part_of(sums, -1.0, sums->cost_of_rest, 1.0);
+    uint32_t bits = counts_at(cost_per_variance_of(rest), 0, sums, c).caustic_bits;
+    double asked = (double)(1u << bits); /* so many samples share an estimate of caustics */
+    rest = camera_part_of(sums, asked - 1.0, sums->cost_of_rest + sums->cost_of_caustic / asked, 1.0);
+    split_counts counts = counts_at(cost_per_variance_of(rest), 0, sums, c);
+    counts.caustic_bits = bits;
+    return counts;
+}
+
+/* Returns best_with_one_ray, but with the camera rays for which the product of variance and cost is least. */
 static split_counts best_of_block(const block_sums *sums, const choice *c)
 {
-    uint32_t bits = wanted_caustic_bits(cost_per_variance_of(camera_part_of(sums, -1.0, sums->cost_of_rest)), sums, c);
-    double shared = (double)(1u << bits); /* so many samples share an estimate of caustics */
-    camera_part rest = camera_part_of(sums, shared - 1.0, sums->cost_of_rest + sums->cost_of_caustic / shared);
-    return counts_at(cost_per_variance_of(rest), bits, sums, c);
+    const split_counts one = best_with_one_ray(sums, c);
+    split_counts best = one;
+    double least = INFINITY; /* as are products of blinding light, none of which is less */
+    for (uint32_t further = c->least.further; further <= c->most.further; further = more_further(further)) {
+        split_counts n = one;
+        n.further = further;
+        n.lights = lights_of_ray((double)one.lights, further, c);
+        camera_part part = split_by(sums, &n);
+        if (part.variance * part.cost < least) {
+            least = part.variance * part.cost;
+            best = n;
+        }
+    }
+    return best;
 }
 
 static split_counts best_counts(const struct ag_film *film, const block_sums *sums, const choice *c)
 {
     double of_frame = film->prior.cost_per_variance;
-    return of_frame > 0.0 ? counts_at(of_frame, wanted_caustic_bits(of_frame, sums, c), sums, c)
-                          : best_of_block(sums, c);
+    if (!(of_frame > 0.0))
+        return best_of_block(sums, c);
+    uint32_t further = best_further(wanted_camera_rays(of_frame, sums), c->least.further, c->most.further);
+    return counts_at(of_frame, further, sums, c);
 }
 
-static choice make_choice(const ag_render_settings *settings)
+/* Returns how many samples a pixel has at least. */
+static int least_samples(const ag_render_settings *settings)
 {
-    return (choice){noise_shown_scale(settings) * (double)settings->exposure,
-                    {.rays = 1, .lights = 1},
-                    sample_split_most(settings, true)};
+    return settings->noise_level > 0.0f ? settings->noise_min_samples : settings->samples_per_pixel;
+}
+
+static choice make_choice(const struct ag_film *film, const ag_render_settings *settings)
+{
+    choice c = {noise_shown_scale(settings) * (double)settings->exposure,
+                {.rays = 1, .lights = 1},
+                sample_split_most(settings, true),
+                1,
+                1.0 / sqrt((double)least_samples(settings))};
+    c.most.further = film_further(film, c.most.further);
+    return c;
 }
 
 /* A block all of whose pixels have had `barrier` samples; another was decided on before, or needs no more. */
@@ -147,6 +244,7 @@ static void decide_block(struct ag_film *film, film_area block, uint32_t barrier
                 return;
             add_pixel(&film->splits[pixel], (double)barrier, c->scale, &sums);
         }
+    sums.by_camera_ray *= c->uneven;
     split_counts before = film->splits[film_pixel_at(film, block.x0, block.y0)].counts;
     split_counts counts = best_counts(film, &sums, c);
     uint32_t used = (barrier + before.ray_shift) * before.rays;
@@ -189,7 +287,7 @@ static split_counts counts_by_pilot(const struct ag_film *film, const struct ag_
             size_t pixel = film_pixel_at(pilot, column, row);
             add_pixel(&pilot->splits[pixel], (double)pilot->counts[pixel], c->scale, &sums);
         }
-    split_counts counts = best_counts(film, &sums, c), unknown = sample_split_first(settings);
+    split_counts counts = best_counts(film, &sums, c), unknown = sample_split_first(settings, true);
     if (!(sums.cost_of_ray > 0.0)) /* the pilot has met nothing there that gathers */
         counts.rays = unknown.rays;
     if (!(sums.cost_of_light > 0.0))
@@ -223,13 +321,16 @@ static void add_group(const block_sums *sums, double cost_per_variance, const ch
     double rays = wanted_count(cost_per_variance, sums->by_ray, sums->cost_of_ray);
     double lights = wanted_count(cost_per_variance, sums->by_light, sums->cost_of_light);
     double caustics = wanted_count(cost_per_variance, sums->caustic, sums->cost_of_caustic);
+    double camera_rays = wanted_camera_rays(cost_per_variance, sums);
+    camera_rays = fmin(fmax(camera_rays, 1.0 + (double)c->least.further), 1.0 + (double)c->most.further);
     rays = fmin(fmax(rays, (double)c->least.rays), (double)c->most.rays);
-    lights = fmin(fmax(lights, (double)c->least.lights), (double)c->most.lights);
+    lights = fmin(fmax(lights, fmax((double)c->least_lights, (double)c->least.lights * camera_rays)),
+                  (double)c->most.lights * camera_rays);
     caustics = fmin(fmax(caustics, 1.0 / (double)(1u << c->most.caustic_bits)), 1.0);
-    whole->variance +=
-        camera_part_of(sums, 1.0 / caustics - 1.0, 0.0).variance + sums->by_ray / rays + sums->by_light / lights;
+    camera_part part = camera_part_of(sums, 1.0 / caustics - 1.0, sums->cost_of_rest, camera_rays);
+    whole->variance += part.variance + sums->by_ray / rays + sums->by_light / lights;
     whole->cost +=
-        sums->cost_of_rest + sums->cost_of_ray * rays + sums->cost_of_light * lights + sums->cost_of_caustic * caustics;
+        part.cost + sums->cost_of_ray * rays + sums->cost_of_light * lights + sums->cost_of_caustic * caustics;
 }
 
 /* Writes the cost of the frame's camera samples divided by their variance, when all blocks have the best numbers.
@@ -263,12 +364,15 @@ ag_status splitting_begin(struct ag_film *film, const struct ag_film *pilot, dou
     const film_area *all = &film->area;
     const int right = all->x0 + all->width, bottom = all->y0 + all->height;
     const double samples = (double)settings->samples_per_pixel;
-    choice c = make_choice(settings);
+    choice c = make_choice(film, settings);
     const double fixed = fixed_cost / (samples * (double)settings->width * (double)settings->height);
     const double clean = FIXED_CLEAN * FIXED_CLEAN * samples;
     split_prior *prior = &film->prior;
     AG_TRY(find_cost_per_variance(pilot, &c, fixed, clean, &prior->cost_per_variance));
-    c.least = (split_counts){.rays = SPLIT_FIRST_RAYS_MIN, .lights = FIRST_LIGHTS_MIN};
+    c.least = (split_counts){.rays = SPLIT_FIRST_RAYS_MIN,
+                             .lights = sample_split_goes_on(settings, true) ? FIRST_LIGHTS_OF_RAY_MIN : 1,
+                             .further = film_first_split(film, settings).further};
+    c.least_lights = FIRST_LIGHTS_MIN;
     if (!prior->first)
         prior->first = malloc((film_block_number(film, right - 1, bottom - 1) + 1) * sizeof *prior->first);
     if (!prior->first)
@@ -287,7 +391,7 @@ uint32_t splitting_decide(struct ag_film *film, const ag_render_settings *settin
     while (barrier < least)
         barrier *= BARRIER_STEP;
     if (barrier == least && least < wanted) {
-        choice c = make_choice(settings);
+        choice c = make_choice(film, settings);
         for (int row = 0; row * FILM_BLOCK < film->area.height; row++)
             for (int column = 0; column * FILM_BLOCK < film->area.width; column++)
                 decide_block(film, film_block_at(film, column, row), least, &c);

@@ -1,6 +1,6 @@
-/* splitting.h: into how many gather rays and light samples a camera sample is split, and how many of them ask for
- * caustics, where no option says it: in each block of pixels so many that the rays which the block costs bring the
- * least noise.
+/* splitting.h: into how many gather rays, light samples and camera rays a camera sample is split, and how many of them
+ * ask for caustics, where no option says it: in each block of pixels so many that the rays which the block costs bring
+ * the least noise.
  * Rests on: Arvo, Kirk, "Particle Transport and Image Synthesis", 1990 (splitting); Neyman, "On the Two Different
  * Aspects of the Representative Method", 1934 (samples by variance and cost). With the variances V between camera
  * samples, G by one gather ray, L by one light sample, and what each of them costs, v, g, l, N camera samples of n rays
@@ -9,13 +9,21 @@
  * by chance, with the probability p (roulette), V - C + C / p and v + p c stand for V and v, and the best probability
  * is p = sqrt(C / (V - C) * v / c).
  *
- * These numbers are best for a block that goes on until it is quiet enough. Where N is fixed, it is the same for all
- * blocks, and what counts is the product of the whole frame's variance E and cost F. This cost includes what the photon
- * maps cost, shared out among the camera samples. The product is least where F / E stands for v / V above, and for
- * v / (V - C): at n = sqrt(G / g * F / E), m = sqrt(L / l * F / E), p = sqrt(C / c * F / E). A small picture of the
- * whole frame tells F / E. Each of its samples lies in the middle of its pixel: in the large picture, what differs
- * across a pixel is spread so evenly among its samples that little of it is left in their mean (Mitchell, "Consequences
- * of Stratified Sampling in Graphics", 1996).
+ * Gathered light and caustics cost most, while edges, highlights and lamps in mirrors want many camera rays. So a
+ * sample may have k of these (eye_sample.h), which all bring the light of other kinds. Where a single one costs s, and
+ * the variance of that light is S, S / k and k s are among V and v, and of what is left of these without them the best
+ * number is k = sqrt(S / V * v / s).
+ *
+ * These numbers are best for a block that goes on until it is quiet enough; there n, m and p are those for one camera
+ * ray, and k the number for which the product is least then. Where N is fixed, it is the same for all blocks, and what
+ * counts is the product of the whole frame's variance E and cost F. This cost includes what the photon maps cost,
+ * shared out among the camera samples. The product is least where F / E stands for v / V above, and for v / (V - C): at
+ * n = sqrt(G / g * F / E), m = sqrt(L / l * F / E), k = sqrt(S / s * F / E), p = sqrt(C / c * F / E). A small picture
+ * of the whole frame tells F / E. Each of its samples lies in the middle of its pixel: in the large picture, what
+ * differs across a pixel is spread so evenly among its samples that little of it is left in their mean (Mitchell,
+ * "Consequences of Stratified Sampling in Graphics", 1996). With few samples it is not so: the first ones then have
+ * several camera rays whatever it tells. By Mitchell the variance that an edge leaves in the mean of N even samples is
+ * as N^-1.5, so of what a block's own samples tell of S, the share 1 / sqrt(N) counts.
  *
  * The numbers are chosen for blocks, as in adaptive.h. With a fixed number of samples, the small picture chooses those
  * of the first ones; later ones are chosen by the block's own samples. Costs are numbers of rays, never times. How a

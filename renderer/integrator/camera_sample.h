@@ -11,6 +11,7 @@ typedef struct camera_sample {
     scene_ray ray; /* of unit direction */
     sampler where; /* keys its random numbers */
     split_counts split;
+    bool is_further; /* one of the split's further camera rays, not the sample's own */
     uint32_t number; /* among the worker's samples under way: gather_batch keeps its gathered light by it */
 } camera_sample;
 

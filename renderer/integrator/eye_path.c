@@ -13,6 +13,8 @@ eye_path eye_path_begin(const camera_sample *from, int roulette_after, bool want
                       .roulette_after = roulette_after,
                       .scattered_from = from->ray.origin,
                       .scatter_count = 1,
+                      .shared = 1.0f / (float)split_camera_rays(from->split),
+                      .is_further = from->is_further,
                       .wants_parts = wants_parts,
                       .parts = {.of = {[PART_EMISSION] = rgb_gray(1.0f)}}};
 }
@@ -62,7 +64,7 @@ static part_shares shares_behind_vertex(const part_shares *before, const vertex 
 static float add_light(eye_sample *sample, const eye_path *path, const part_shares *parts, int scatterings, rgb brought,
                        bool is_sky)
 {
-    float kept = eye_sample_bound(sample, path->share, scatterings, brought);
+    float kept = eye_sample_bound(sample, path->share * path->shared, scatterings, brought);
     if (kept < 1.0f)
         brought = rgb_scale(brought, kept);
     sample->radiance = rgb_add(sample->radiance, brought);
@@ -89,7 +91,9 @@ static void fill_first_hit(const transport *t, eye_worker *worker, const eye_pat
 bool eye_path_trace(const transport *t, eye_worker *worker, eye_path *path, eye_sample *sample, vertex *out)
 {
     bool is_camera_ray = path->vertex == 0;
-    if (is_camera_ray)
+    if (is_camera_ray && path->is_further)
+        worker->rays_further++;
+    else if (is_camera_ray)
         worker->rays_camera++;
     else
         worker->rays_path++;
@@ -100,8 +104,9 @@ bool eye_path_trace(const transport *t, eye_worker *worker, eye_path *path, eye_
     path->throughput = rgb_mul(path->throughput, out->transmittance);
     worker->camera_rays_met += is_met && is_camera_ray;
     if (is_camera_ray && t->wants_layers) {
-        sample->layers->alpha = is_met ? 1.0f : fmaxf(1.0f - rgb_mean(out->transmittance), 0.0f);
-        if (is_met)
+        float alpha = is_met ? 1.0f : fmaxf(1.0f - rgb_mean(out->transmittance), 0.0f);
+        sample->layers->alpha += path->shared * alpha;
+        if (is_met && !path->is_further)
             fill_first_hit(t, worker, path, out, &sample->layers->first);
     }
     return is_met;
@@ -114,7 +119,7 @@ void eye_path_add_escaped(const transport *t, const eye_path *path, eye_sample *
 {
     light_group_sums groups;
     rgb *by_group = light_group_sums_begin(&groups, t->wants_groups);
-    rgb weight = rgb_scale(path->throughput, path->share);
+    rgb weight = rgb_scale(path->throughput, path->share * path->shared);
     rgb escaped = direct_light_escaped(t, path->scattered_from, path->scattered_normal, path->ray.direction,
                                        path->scattered_pdf, weighted_against(path), by_group);
     float kept = add_light(sample, path, path->wants_parts ? &path->parts : NULL, path->scatterings,
@@ -127,7 +132,7 @@ void eye_path_add_emitted(const transport *t, const eye_path *path, const vertex
     rgb emitted = vertex_emission(t->s, v);
     if (rgb_is_black(emitted))
         return;
-    float weight = path->share;
+    float weight = path->share * path->shared;
     if (path->scattered_pdf > 0.0f)
         weight *= direct_light_scatter_weight(t, path->scattered_from, path->scattered_normal, v, path->scattered_pdf,
                                               weighted_against(path));
@@ -144,7 +149,7 @@ void eye_path_add_direct(const transport *t, eye_worker *worker, const eye_path 
     float u_pick = sampler_2d(&path->where, SAMPLE_LIGHT_PICK, key).x;
     lamp_light direct = direct_light_sample_lamp(t, worker, v, lobes, u_pick,
                                                  sampler_2d(&path->where, SAMPLE_LIGHT, key), 1, (float)scatter_count);
-    rgb brought = rgb_mul(rgb_scale(path->throughput, path->share), direct.radiance);
+    rgb brought = rgb_mul(rgb_scale(path->throughput, path->share * path->shared), direct.radiance);
     if (rgb_is_black(brought))
         return;
     const light *lamp = &t->s->lights[direct.lamp];

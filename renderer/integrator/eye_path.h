@@ -31,6 +31,8 @@ typedef struct eye_path {
     vec3 scattered_from, scattered_normal; /* position and vertex_light_normal of the last scattering */
     float scattered_pdf; /* per solid angle; 0: the eye or a smooth lobe, for which no shadow ray can stand */
     int scatter_count;   /* how many branches left that position */
+    float shared;        /* 1 / the sample's camera rays: the share of light that each of them brings */
+    bool is_further;     /* of a further camera ray: see eye_sample.h */
     bool wants_parts;
     part_shares parts; /* valid where wants_parts */
 } eye_path;

@@ -12,8 +12,8 @@ struct ag_rendering;
 /* Each function may be NULL, which does nothing, but for sample. */
 typedef struct integrator {
     bool has_photon_map;  /* it traces photons, so that their settings, layers and statistics apply */
-    bool splits_samples;  /* its samples tell cost and variance of their gather rays and light samples, so that each
-                             block of the picture can choose how many there are (film/splitting.h) */
+    bool splits_samples;  /* its samples tell cost and variance of their gather rays, light samples and camera rays,
+                             so that each block of the picture can choose how many there are (film/splitting.h) */
     float direct_guiding; /* the default of that setting */
 
     /* Called once, before all tiles: makes what tiles read, in the rendering, and refers to it in the transport.
@@ -30,7 +30,8 @@ typedef struct integrator {
     ag_status (*begin_pass)(struct ag_rendering *r);
 
     /* Adds the radiance along a camera ray to a sample that has nothing in it but its bounds and room for layers; what
-     * complete brings comes later. */
+     * complete brings comes later. Where samples are split it is then called for each of the sample's further camera
+     * rays, which add neither caustics nor gathered light (split_counts). */
     void (*sample)(const transport *t, eye_worker *worker, const camera_sample *from, eye_sample *in_out);
     /* Completes all samples that the worker has under way. */
     void (*complete)(const transport *t, eye_worker *worker);

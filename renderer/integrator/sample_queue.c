@@ -42,6 +42,7 @@ static void add_gathered(eye_sample *s, const gathered_light *gathered, uint32_t
 {
     s->radiance = rgb_add(s->radiance, rgb_add(gathered->first, gathered->behind));
     s->gather_variance = gathered->variance;
+    s->own += rgb_mean(rgb_add(gathered->first, gathered->behind));
     if (!s->layers)
         return;
     eye_sample_add_part(s, PART_INDIRECT, gathered->first);
@@ -70,7 +71,7 @@ static bool is_finite(const struct ag_film *film, const eye_sample *sample)
 static void blacken(eye_sample *sample)
 {
     sample->radiance = rgb_gray(0.0f);
-    sample->gather_variance = sample->light_variance = sample->caustic_square = 0.0f;
+    sample->gather_variance = sample->light_variance = sample->caustic_square = sample->own = 0.0f;
     if (sample->layers) {
         const sample_layers seen = *sample->layers;
         *sample->layers = (sample_layers){.alpha = seen.alpha, .first = seen.first};
@@ -82,9 +83,16 @@ static void bound(const film_response *response, eye_sample *sample)
 {
     rgb bounded = film_response_bound(response, sample->radiance);
     float before = rgb_max(sample->radiance);
-    if (sample->layers && before > 0.0f && rgb_max(bounded) < before)
-        scale_layers(sample->layers, rgb_max(bounded) / before);
     sample->radiance = bounded;
+    if (!(before > 0.0f && rgb_max(bounded) < before))
+        return;
+    float kept = rgb_max(bounded) / before;
+    if (sample->layers)
+        scale_layers(sample->layers, kept);
+    sample->own *= kept;
+    sample->gather_variance *= kept * kept;
+    sample->light_variance *= kept * kept;
+    sample->caustic_square *= kept * kept;
 }
 
 uint32_t sample_queue_deliver(sample_queue *q, gathered_light *gathered, uint32_t gathered_group, ag_film *film)

@@ -20,8 +20,9 @@ static const float WAYS_VARIANCE = 1.0f / 8192.0f;
 
 /* The parts of the light that a diffuse vertex sends on, but for gathered light, which the sample gets later. */
 typedef struct diffuse_light {
-    rgb direct, caustic, indirect;
-    rgb sky; /* the part of the direct light that comes from infinite lights */
+    rgb direct, caustic;
+    rgb estimated; /* all of the light at once */
+    rgb sky;       /* the part of the direct light that comes from infinite lights */
 } diffuse_light;
 
 /* Returns the exponent of the power of two that is nearest by ratio, at least 0. */
@@ -93,7 +94,7 @@ static direct_light direct_radiance(const transport *t, eye_worker *worker, cons
                                                 eye_path_key(path) + SAMPLER_KEY_RAYS * (int)sampler_bits(lights),
                                                 transport_sample_counts(t, lights, path->scatterings == 0), by_group);
     if (path->scatterings == 0) {
-        float weight = path->share * rgb_mean(path->throughput);
+        float weight = path->share * path->shared * rgb_mean(path->throughput);
         sample->light_cost += (uint32_t)(eye_worker_cost(worker) - before);
         sample->light_variance += weight * weight * direct.variance;
     }
@@ -144,7 +145,7 @@ static diffuse_light diffuse_radiance(const transport *t, eye_worker *worker, co
     if (scatterings_left < 1)
         return sum;
     if (wants_all && path->scatterings > 0 && rgb_max(path->throughput) < SHADING_LOW_CONTRIBUTION) {
-        sum.indirect = estimated_radiance(t, worker, v);
+        sum.estimated = estimated_radiance(t, worker, v);
         return sum;
     }
     if (wants_all) {
@@ -152,6 +153,8 @@ static diffuse_light diffuse_radiance(const transport *t, eye_worker *worker, co
         sum.direct = direct.radiance;
         sum.sky = direct.from_sky;
     }
+    if (path->is_further)
+        return sum;
     sum.caustic = caustic_radiance(t, worker, v, from, path, sample);
     if (scatterings_left >= 2)
         gather_light(t, worker, v, from, path, sample);
@@ -165,28 +168,25 @@ static void add_diffuse(const transport *t, eye_sample *sample, const diffuse_li
 {
     int scatterings = path->scatterings;
     bool is_first = scatterings == 0;
-    float share = path->share;
-    rgb throughput = rgb_scale(path->throughput, share);
-    rgb direct = rgb_mul(throughput, diffuse->direct), caustic = rgb_mul(throughput, diffuse->caustic),
-        indirect = rgb_mul(throughput, diffuse->indirect);
-    float kept_direct = eye_sample_bound(sample, share, scatterings + 1, direct),
-          kept_caustic = eye_sample_bound(sample, share, scatterings + 2, caustic),
-          kept_indirect = eye_sample_bound(sample, share, scatterings + 2, indirect);
+    float share = path->share, shared = share * path->shared;
+    rgb throughput = rgb_scale(path->throughput, share), throughput_shared = rgb_scale(path->throughput, shared);
+    rgb direct = rgb_mul(throughput_shared, diffuse->direct), caustic = rgb_mul(throughput, diffuse->caustic),
+        estimated = rgb_mul(throughput_shared, diffuse->estimated);
+    float kept_direct = eye_sample_bound(sample, shared, scatterings + 1, direct);
     direct = rgb_scale(direct, kept_direct);
-    caustic = rgb_scale(caustic, kept_caustic);
-    indirect = rgb_scale(indirect, kept_indirect);
-    rgb all = rgb_mul(throughput, rgb_add(rgb_add(diffuse->direct, diffuse->caustic), diffuse->indirect));
-    if (kept_direct < 1.0f || kept_caustic < 1.0f || kept_indirect < 1.0f)
-        all = rgb_add(rgb_add(direct, caustic), indirect);
-    sample->radiance = rgb_add(sample->radiance, all);
+    caustic = rgb_scale(caustic, eye_sample_bound(sample, share, scatterings + 2, caustic));
+    estimated = rgb_scale(estimated, eye_sample_bound(sample, shared, scatterings + 2, estimated));
+    sample->radiance = rgb_add(sample->radiance, rgb_add(rgb_add(direct, caustic), estimated));
+    sample->own += rgb_mean(caustic);
     eye_sample_add_part(sample, is_first ? PART_DIRECT : PART_SPECULAR, direct);
     eye_sample_add_part(sample, is_first ? PART_CAUSTIC : PART_SPECULAR, caustic);
-    eye_sample_add_part(sample, is_first ? PART_INDIRECT : PART_SPECULAR, indirect);
+    eye_sample_add_part(sample, is_first ? PART_INDIRECT : PART_SPECULAR, estimated);
     if (is_first && sample->layers)
-        sample->layers->sky = rgb_add(sample->layers->sky, rgb_scale(rgb_mul(throughput, diffuse->sky), kept_direct));
+        sample->layers->sky =
+            rgb_add(sample->layers->sky, rgb_scale(rgb_mul(throughput_shared, diffuse->sky), kept_direct));
     if (by_group) {
-        eye_sample_add_groups(sample, by_group, rgb_scale(throughput, kept_direct));
-        eye_sample_add_group(sample, (uint32_t)t->layout->group_count, rgb_add(caustic, indirect));
+        eye_sample_add_groups(sample, by_group, rgb_scale(throughput_shared, kept_direct));
+        eye_sample_add_group(sample, (uint32_t)t->layout->group_count, rgb_add(caustic, estimated));
     }
 }
 
@@ -204,8 +204,11 @@ static uint32_t branch_bits(const transport *t, const eye_path *path, const vert
     float reflected = bsdf_smooth_reflection_share(&v->scattering, BSDF_TRACED);
     if (reflected == 0.0f || reflected == 1.0f) /* all reflected, say: branches would be one line */
         return 0;
-    int most = bsdf_is_sampled_from_light(&v->scattering, BSDF_TRACED) ? BRANCHES_MAX : SMOOTH_BRANCHES_MAX;
-    return nearest_bits((float)most * bsdf_probability(&v->scattering, BSDF_TRACED) * share_seen(path));
+    float most =
+        bsdf_is_sampled_from_light(&v->scattering, BSDF_TRACED) ? (float)BRANCHES_MAX : (float)SMOOTH_BRANCHES_MAX;
+    if (path->is_further) /* by whose branches nothing is gathered */
+        most *= 2.0f * path->shared;
+    return nearest_bits(most * bsdf_probability(&v->scattering, BSDF_TRACED) * share_seen(path));
 }
 
 static void follow(const transport *t, eye_worker *worker, const camera_sample *from, eye_path path,
@@ -235,7 +238,7 @@ typedef struct two_ways {
 static bool split_ways(const eye_path *path, const vertex *v, two_ways *out)
 {
     float reflected = bsdf_smooth_reflection_share(&v->scattering, BSDF_TRACED), transmitted = 1.0f - reflected;
-    float share = share_seen(path);
+    float share = share_seen(path) * (path->is_further ? path->shared : 1.0f);
     if (path->ways_taken >= WAYS_MAX || !(reflected * transmitted * share * share > WAYS_VARIANCE))
         return false;
     float u_reflected = 0.5f * reflected, u_transmitted = 1.0f - 0.5f * transmitted;

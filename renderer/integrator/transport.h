@@ -41,8 +41,9 @@ typedef struct transport {
 static inline bool transport_wants_all_light(const transport *t) { return t->settings->only == AG_ONLY_ALL; }
 
 typedef struct eye_worker {
-    _Alignas(64) unsigned index; /* the worker's */
-    uint64_t rays_camera, rays_shadow, rays_gather, rays_path;
+    _Alignas(64) unsigned index;        /* the worker's */
+    uint64_t rays_camera, rays_further; /* samples' own camera rays, and further ones */
+    uint64_t rays_shadow, rays_gather, rays_path;
     uint64_t rays_estimate;                /* of photon estimates and lookups at the point itself */
     uint64_t estimates_caustic;            /* estimates of the caustic map's light */
     uint64_t camera_rays_met;              /* those that met a surface or were scattered in a medium */
@@ -62,12 +63,18 @@ static inline photon_neighbor *eye_worker_neighbors(eye_worker *worker, const ph
 /* The cost of a worker's rays so far in quarters of a gather ray's time, as measured in five rooms. Detours are left
  * out: they do not belong to the sample under way. A camera ray's cost includes the sample's whole way into the film, a
  * path ray's the shading of the vertex that it meets. */
-enum { EYE_COST_OF_RAY = 4, EYE_COST_OF_CAMERA_RAY = 24, EYE_COST_OF_PATH_RAY = 8, EYE_COST_OF_CAUSTIC = 32 };
+enum {
+    EYE_COST_OF_RAY = 4,
+    EYE_COST_OF_CAMERA_RAY = 24,
+    EYE_COST_OF_FURTHER_RAY = 8,
+    EYE_COST_OF_PATH_RAY = 8,
+    EYE_COST_OF_CAUSTIC = 32
+};
 static inline uint64_t eye_worker_cost(const eye_worker *w)
 {
-    return EYE_COST_OF_CAMERA_RAY * w->rays_camera + EYE_COST_OF_PATH_RAY * w->rays_path +
-           EYE_COST_OF_RAY * (w->rays_shadow + w->rays_gather) + w->rays_estimate +
-           EYE_COST_OF_CAUSTIC * w->estimates_caustic - w->uncharged_cost;
+    return EYE_COST_OF_CAMERA_RAY * w->rays_camera + EYE_COST_OF_FURTHER_RAY * w->rays_further +
+           EYE_COST_OF_PATH_RAY * w->rays_path + EYE_COST_OF_RAY * (w->rays_shadow + w->rays_gather) +
+           w->rays_estimate + EYE_COST_OF_CAUSTIC * w->estimates_caustic - w->uncharged_cost;
 }
 
 /* The numbers of samples that direct light takes at a diffuse vertex. */

@@ -44,7 +44,7 @@ static void test_reflections(void **state)
                                  "Translate 1 1 2 Shape \"sphere\" \"float radius\" 0.2 AttributeEnd\n"
                                  "Material \"conductor\" \"float roughness\" 0.3\n",
                                  PLANE);
-    EXPECT_HINT(scene, "in reflections and glass", "more samples (--spp)", "--spp=16");
+    EXPECT_HINT(scene, "in reflections and glass", "more samples (--spp)", "--spp=16", "--gather-samples=2");
     EXPECT_HINT(scene, "in reflections and glass", "more samples (--spp)", "--spp=16", "--integrator=path");
 }
 
@@ -76,7 +76,7 @@ static void test_lamps(void **state)
 {
     (void)state;
     EXPECT_HINT(PROGRAM_SCENES "lamp_sphere.pbrt", "in direct light from lamps", "more samples (--spp)", "--spp=2",
-                "--max-depth=1");
+                "--gather-samples=1", "--max-depth=1");
 }
 
 static void test_indirect(void **state)

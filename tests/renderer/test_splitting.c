@@ -1,6 +1,6 @@
-/* test_splitting.c: how many gather rays and light samples blocks of pixels choose: the best numbers in closed form
- * where variances and costs are known; the expectation stays; the picture is the same for any number of threads,
- * however the work is cut into passes, and in crops; and the choice pays. Threads: the renderer's. */
+/* test_splitting.c: how many gather rays, light samples and camera rays blocks of pixels choose: the best numbers in
+ * closed form where variances and costs are known; the expectation stays; the picture is the same for any number of
+ * threads, however the work is cut into passes, and in crops; and the choice pays. Threads: the renderer's. */
 #define _GNU_SOURCE
 #include "film/film_sums.h"
 #include "film/splitting.h"
@@ -34,27 +34,35 @@ static ag_render_settings settings_of(float noise_level, int samples)
     return s;
 }
 
-/* Four samples for each pixel, of the variance that is asked for: of their own, by one gather ray, by one light sample;
- * caustic: the mean square of their caustics. A ray costs 4, as does a light sample, a caustic and the rest of a camera
- * sample 40 each. */
-static void add_block(ag_film *film, int x0, double own, double by_ray, double by_light, double caustic)
+/* What four samples of a block's pixels are to have: variances of their own, by one gather ray, by one light sample and
+ * by one camera ray; and the mean square of their caustics. */
+typedef struct made_up {
+    double own, by_ray, by_light, caustic, by_camera_ray;
+} made_up;
+
+/* A ray costs 4, as does a light sample, a further camera ray 24, a caustic and the rest of a camera sample 40 each. */
+static void add_block(ag_film *film, int x0, made_up block)
 {
     for (int y = 0; y < HEIGHT; y++)
         for (int x = x0; x < x0 + FILM_BLOCK; x++) {
             size_t pixel = film_pixel_at(film, x, y);
             split_counts counts = film->splits[pixel].counts;
-            float rays = (float)counts.rays, lights = (float)counts.lights;
+            double rays = (double)counts.rays, lights = (double)(counts.lights * split_camera_rays(counts));
             eye_sample s = {.sign = 1,
-                            .gather_variance = (float)by_ray / rays,
-                            .light_variance = (float)by_light / lights,
-                            .caustic_square = (float)caustic,
+                            .gather_variance = (float)(block.by_ray / rays),
+                            .light_variance = (float)(block.by_light / lights),
+                            .caustic_square = (float)block.caustic,
                             .caustic_cost = 40,
                             .gather_cost = 4 * counts.rays,
-                            .light_cost = 4 * counts.lights,
+                            .light_cost = 4 * counts.lights * split_camera_rays(counts),
+                            .further_cost = 24 * counts.further,
                             .rest_cost = 40};
-            double all = own + by_ray / (double)rays + by_light / (double)lights;
+            double own = block.own + block.by_ray / rays;
+            double all = own + block.by_light / lights + block.by_camera_ray / (double)split_camera_rays(counts);
             for (int i = 0; i < 4; i++) {
-                s.radiance = rgb_gray(1.0f + (float)(i % 2 ? sqrt(0.75 * all) : -sqrt(0.75 * all)));
+                double sign = i % 2 ? 1.0 : -1.0;
+                s.radiance = rgb_gray(1.0f + (float)(sign * sqrt(0.75 * all)));
+                s.own = (float)(sign * sqrt(0.75 * own));
                 film_add(film, pixel, &s);
             }
         }
@@ -81,9 +89,9 @@ static void test_best_numbers(void **state)
     for (size_t k = 0; k < film_area_count(film); k++)
         film->wanted[k] = 16;
     assert_int_equal(splitting_decide(film, &settings, 16), 4);
-    expect_counts(film, 3, 16, 16);
-    add_block(film, 0, 0.04, 0.04, 0.01, 0.008);
-    add_block(film, FILM_BLOCK, 0.04, 0.0, 0.0, 0.0);
+    expect_counts(film, 3, 16, 4); /* by each of three camera rays */
+    add_block(film, 0, (made_up){0.04, 0.04, 0.01, 0.008, 0.0});
+    add_block(film, FILM_BLOCK, (made_up){.own = 0.04});
     for (int times = 0; times < 2; times++) { /* again changes nothing */
         assert_int_equal(splitting_decide(film, &settings, 16), 16);
         expect_counts(film, 3, 4, 2);
@@ -114,12 +122,14 @@ static void test_best_numbers_of_frames(void **state)
         ag_render_settings settings = settings_of(0.0f, 8), pilots = settings_of(0.0f, 4);
         ag_film *film = create_film(&settings), *pilot = create_film(&pilots);
         for (int half = 0; half < 2; half++)
-            add_block(pilot, half * FILM_BLOCK, cases[i].own[half], cases[i].by_ray[half], cases[i].by_light, 0.0);
+            add_block(pilot, half * FILM_BLOCK,
+                      (made_up){cases[i].own[half], cases[i].by_ray[half], cases[i].by_light, 0.0, 0.0});
         double samples = (double)settings.samples_per_pixel * WIDTH * HEIGHT;
         assert_int_equal(splitting_begin(film, pilot, cases[i].fixed * samples, &settings), AG_OK);
         uint32_t first = film->splits[0].counts.rays;
         for (int half = 0; half < 2; half++)
-            add_block(film, half * FILM_BLOCK, cases[i].own[half], cases[i].by_ray[half], cases[i].by_light, 0.0);
+            add_block(film, half * FILM_BLOCK,
+                      (made_up){cases[i].own[half], cases[i].by_ray[half], cases[i].by_light, 0.0, 0.0});
         assert_int_equal(splitting_decide(film, &settings, 8), 8);
         split_counts got = film->splits[film_pixel_at(film, 3, 3)].counts;
         if (first != cases[i].rays || got.rays != cases[i].rays || got.lights != cases[i].lights)
@@ -130,14 +140,85 @@ static void test_best_numbers_of_frames(void **state)
     }
 }
 
+static uint32_t camera_rays_at(const ag_film *film, int x)
+{
+    return split_camera_rays(film->splits[film_pixel_at(film, x, 3)].counts);
+}
+
+/* How many camera rays a sample has, by the variance that these bring, of which 1 / sqrt(N) counts. */
+static void test_best_camera_rays(void **state)
+{
+    (void)state;
+    /* A block by itself: 40 for the rest, 20 for half of the caustics, 4 for a gather ray, 4 for a light sample of each
+     * of n camera rays, 24 for each but the first: (0.02 + 0.16 / n) (40 + 28 n) is 12.2, 9.6, 9.1, 9.4 and 11.0 for 1,
+     * 2, 3, 5 and 9. */
+    ag_render_settings settings = settings_of(0.01f, 16);
+    ag_film *film = create_film(&settings);
+    for (size_t k = 0; k < film_area_count(film); k++)
+        film->wanted[k] = 16;
+    assert_int_equal(camera_rays_at(film, 3), 3);
+    add_block(film, 0, (made_up){.own = 0.02, .by_camera_ray = sqrt(16.0) * 0.16});
+    add_block(film, FILM_BLOCK, (made_up){.own = 0.04, .by_ray = 0.04});
+    for (int times = 0; times < 2; times++) { /* again changes nothing */
+        assert_int_equal(splitting_decide(film, &settings, 16), 16);
+        assert_int_equal(camera_rays_at(film, 3), 3);
+        assert_int_equal(camera_rays_at(film, 11), 1);
+    }
+    ag_film_destroy(film);
+
+    /* With a fixed number of samples sqrt(S / 24 * F / E) camera rays; a quarter of a variance of 1 is shown. 3.1 is
+     * nearest to 3, 1.3 to 1. */
+    settings = settings_of(0.0f, 8);
+    film = create_film(&settings);
+    film->prior.cost_per_variance = 2400.0;
+    add_block(film, 0, (made_up){.own = 0.01, .by_camera_ray = sqrt(8.0) * 0.384});
+    add_block(film, FILM_BLOCK, (made_up){.own = 0.01, .by_camera_ray = sqrt(8.0) * 0.0676});
+    assert_int_equal(splitting_decide(film, &settings, 8), 8);
+    assert_int_equal(camera_rays_at(film, 3), 3);
+    assert_int_equal(camera_rays_at(film, 11), 1);
+    ag_film_destroy(film);
+
+    /* the first samples have the more, the fewer they are; indirect light alone comes by one */
+    static const uint32_t first[] = {0, 8, 4, 2, 2, 1, 1, 1, 1, 0};
+    for (int samples = 1; samples <= 9; samples++) {
+        settings = settings_of(0.0f, samples);
+        assert_int_equal(sample_split_first(&settings, true).further, first[samples]);
+        assert_int_equal(sample_split_first(&settings, false).further, 0);
+        settings.only = AG_ONLY_INDIRECT;
+        assert_int_equal(sample_split_first(&settings, true).further, 0);
+        assert_int_equal(sample_split_most(&settings, true).further, 0);
+    }
+}
+
+/* Light so bright that its square is no number leaves counts that can be used. */
+static void test_blinding_light(void **state)
+{
+    (void)state;
+    for (int k = 0; k < 2; k++) {
+        ag_render_settings settings = settings_of(k == 0 ? 0.01f : 0.0f, 16);
+        ag_film *film = create_film(&settings);
+        for (size_t pixel = 0; pixel < film_area_count(film); pixel++) {
+            if (film->wanted)
+                film->wanted[pixel] = 16;
+            for (int i = 0; i < 4; i++)
+                film_add(film, pixel,
+                         &(eye_sample){.radiance = rgb_gray((float)i * 1e22f), .sign = 1, .rest_cost = 40});
+        }
+        assert_int_equal(splitting_decide(film, &settings, 16), 16);
+        split_counts got = film->splits[0].counts;
+        assert_true(got.rays >= 1 && got.lights >= 1);
+        ag_film_destroy(film);
+    }
+}
+
 /* Before the first sample, by a picture of the whole frame; the same counts again when the film is emptied. */
 static void test_first_numbers(void **state)
 {
     (void)state;
-    ag_render_settings settings = settings_of(0.0f, 2), pilots = settings_of(0.0f, 4);
+    ag_render_settings settings = settings_of(0.0f, 16), pilots = settings_of(0.0f, 4);
     ag_film *pilot = create_film(&pilots), *film;
-    add_block(pilot, 0, 0.04, 0.64, 0.16, 0.004);
-    add_block(pilot, FILM_BLOCK, 0.04, 0.0, 0.0, 0.0);
+    add_block(pilot, 0, (made_up){0.04, 0.64, 0.16, 0.004, 0.0});
+    add_block(pilot, FILM_BLOCK, (made_up){.own = 0.04});
     settings.width = 5 * WIDTH; /* five blocks of it lie in one of the pilot */
     settings.crop_window[0] = 0.3;
     film = create_film(&settings);
@@ -166,7 +247,7 @@ static void test_first_numbers_of_the_unknown(void **state)
     for (size_t i = 0; i < film_area_count(pilot); i++)
         for (int k = 0; k < 4; k++)
             film_add(pilot, i, &(eye_sample){.sign = 1, .rest_cost = 1});
-    split_counts first = sample_split_first(&settings);
+    split_counts first = sample_split_first(&settings, true);
     assert_int_equal(splitting_begin(film, pilot, 0.0, &settings), AG_OK);
     assert_true(film->splits[0].counts.rays == first.rays && film->splits[0].counts.lights == first.lights);
     assert_true(first.rays == 4 && first.lights == 16);
@@ -181,8 +262,8 @@ static void test_bounded_light(void **state)
     ag_render_settings settings = settings_of(0.0f, 16);
     settings.clamp_indirect = 1.0f;
     ag_film *film = create_film(&settings);
-    add_block(film, 0, 0.04, 0.04, 0.02, 0.0);
-    add_block(film, FILM_BLOCK, 0.04, 0.0, 0.0, 0.0);
+    add_block(film, 0, (made_up){0.04, 0.04, 0.02, 0.0, 0.0});
+    add_block(film, FILM_BLOCK, (made_up){.own = 0.04});
     assert_int_equal(splitting_decide(film, &settings, 16), 16);
     for (size_t pixel = 0; pixel < film_area_count(film); pixel++)
         assert_int_equal(film->splits[pixel].counts.caustic_bits, 0);
@@ -197,7 +278,7 @@ static void test_given_number(void **state)
     ag_film *film = create_film(&settings);
     assert_false(sample_split_is_open(&settings, true));
     assert_null(film->splits);
-    split_counts counts = sample_split_first(&settings);
+    split_counts counts = sample_split_first(&settings, true);
     assert_true(counts.rays == 20 && counts.lights == 3);
     ag_film_destroy(film);
     settings.gather_samples = 0;
@@ -219,6 +300,7 @@ static void add_skewed(ag_film *film, size_t pixel, rng *random)
              &(eye_sample){.radiance = rgb_gray(value),
                            .sign = 1,
                            .gather_variance = variance,
+                           .own = value,
                            .gather_cost = 4 * rays,
                            .light_cost = 8,
                            .rest_cost = 40});
@@ -382,11 +464,63 @@ static void test_caustics_by_chance(void **state)
     studio_close(s);
 }
 
+/* Further camera rays bring what the samples' own ones bring, of each part, on the same photons. Channels that a scene
+ * has nothing in agree in that. */
+static void test_expectation_of_further_rays(void **state)
+{
+    (void)state;
+    if (IS_SANITIZED)
+        skip(); /* statistics of what test_same_bits runs */
+    enum { SEEDS = 16, CHANNELS = 6, SCENES = 4 };
+    static const char *const scenes[SCENES] = {LAYERS_SCENES "rough_coats.pbrt", LAYERS_SCENES "glass_and_metal.pbrt",
+                                               LAYERS_SCENES "foggy_room.pbrt", LAYERS_SCENES "environment.pbrt"};
+    static const char *const channels[CHANNELS] = {"R", "emission.R", "direct.R", "specular.R", "indirect.R", "A"};
+    uint32_t found = 0;
+    for (int n = 0; n < SCENES; n++) {
+        studio *s = studio_open(scenes[n], 1);
+        s->settings.width = 29, s->settings.height = 27;
+        s->settings.noise_level = 0.0f;
+        s->settings.photon_count = 30000;
+        s->settings.photon_seed = 7;
+        s->settings.layers = AG_LAYERS_LIGHT | AG_LAYER_ALPHA;
+        double sum[CHANNELS] = {0}, squares[CHANNELS] = {0}, single[CHANNELS] = {0};
+        for (int i = 0; i < SEEDS; i++) {
+            ag_film *films[2];
+            s->settings.seed = (uint64_t)i + 1;
+            for (int k = 0; k < 2; k++) {
+                s->settings.gather_samples = k == 0 ? 0 : 4;
+                s->settings.samples_per_pixel = k == 0 ? 1 : 8;
+                films[k] = studio_render(s);
+            }
+            assert_int_equal(films[0]->splits[0].counts.further, 8);
+            for (int c = 0; c < CHANNELS; c++) {
+                double mean = film_mean(films[1], channels[c]), more = film_mean(films[0], channels[c]) - mean;
+                sum[c] += more;
+                squares[c] += more * more;
+                single[c] += mean / SEEDS;
+            }
+            ag_film_destroy(films[0]);
+            ag_film_destroy(films[1]);
+        }
+        for (int c = 0; c < CHANNELS; c++) {
+            double mean = sum[c] / SEEDS, error = sqrt(fmax(squares[c] / SEEDS - mean * mean, 0.0) / (SEEDS - 1));
+            print_message("%s %.4e, by nine camera rays %+.2e +- %.2e more\n", channels[c], single[c], mean, error);
+            assert_true(c > 0 || (single[c] > 0.0 && error < 0.01 * single[c]));
+            found |= (uint32_t)(error > 0.0 && error < 0.01 * single[c]) << c;
+            expect_within(channels[c], mean, 0.0, 4.0 * error + 1e-6 * single[0]);
+        }
+        studio_close(s);
+    }
+    assert_int_equal(found, (1 << CHANNELS) - 1); /* each is told by one of the scenes */
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_best_numbers),
         cmocka_unit_test(test_best_numbers_of_frames),
+        cmocka_unit_test(test_best_camera_rays),
+        cmocka_unit_test(test_blinding_light),
         cmocka_unit_test(test_first_numbers),
         cmocka_unit_test(test_first_numbers_of_the_unknown),
         cmocka_unit_test(test_bounded_light),
@@ -395,6 +529,7 @@ int main(void)
         TEST_IN_FOLDER(test_same_bits),
         TEST_IN_FOLDER(test_crops),
         TEST_IN_FOLDER(test_caustics_by_chance),
+        cmocka_unit_test(test_expectation_of_further_rays),
         TEST_IN_FOLDER(test_checkpoint_of_other),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -134,7 +134,8 @@ typedef struct ag_render_settings {
                                    warnings refer to the picture as shown; default 0 */
     int gather_samples;         /* gather rays of each camera sample that meets a diffuse surface first, [1, 65536];
                                    hits behind glossy surfaces share about as many. 0, the default: each block of 8
-                                   by 8 pixels chooses the numbers of gather rays and light samples, and how often
+                                   by 8 pixels chooses the numbers of gather rays, light samples and camera rays of
+                                   a sample (these bring all light but gathered light and caustics), and how often
                                    caustics are asked for, by the noise of its samples and what they cost; samples
                                    times gather rays are AG_DEFAULT_GATHER_RAYS_PER_PIXEL at most, or 4 gather rays a
                                    sample (with a noise level: 64) */

@@ -110,9 +110,10 @@ typedef struct ag_statistics {
         irradiance_duplicated, irradiance_uncached, irradiance_refused, irradiance_ready, irradiance_reclaimed;
     double irradiance_estimate_s; /* CPU seconds of estimates, all threads; extrapolated from every sixteenth */
     double irradiance_wait_s;     /* CPU seconds of waiting for other threads' estimates, all threads */
-    /* Rays by purpose. estimate: cast by estimates and lookups in the photon maps, to find where surfaces end and
-     * which photons are visible; those whose answer is known are not cast, and the ray and the queries that find out
-     * what is near a leaf of a map, once for each leaf, are not counted. */
+    /* Rays by purpose. camera: where samples choose how they are split they may have several each. estimate: cast by
+     * estimates and lookups in the photon maps, to find where surfaces end and which photons are visible; those whose
+     * answer is known are not cast, and the ray and the queries that find out what is near a leaf of a map, once for
+     * each leaf, are not counted. */
     uint64_t rays_camera, rays_shadow, rays_gather, rays_photon, rays_path, rays_estimate;
     uint64_t samples_not_finite; /* camera samples dropped because a component was not finite: 0 */
     double time_s[AG_PHASE_COUNT];
