@@ -435,12 +435,15 @@ static const setting_row ROWS[] = {
               .section = "Light",
               .help = "gather rays for each camera sample (default: each block of pixels chooses by its noise, from "
                       "about 256 a pixel on)",
-              .manual = "Gather rays for each camera sample: exactly so many, and a light sample for each eight of "
-                        "them. By default each block of 8 by 8 pixels chooses both numbers by the noise of its own "
-                        "samples. The first four samples of a pixel have 256 rays in all, shared by *--spp*, but at "
-                        "least 4 each, and 16 light samples; then it is decided, and again at four times as many "
-                        "samples. With *--noise 0* later samples have at least half as many rays as the first ones, "
-                        "and no more than these; with a noise level from 1 to 64."},
+              .manual = "Gather rays for each camera sample: exactly so many, a light sample for each eight of "
+                        "them, and one camera ray. By default each block of 8 by 8 pixels chooses the three "
+                        "numbers by the noise of its own samples; further camera rays bring all light but "
+                        "gathered light and caustics. The first four samples of a pixel have 256 gather rays in "
+                        "all, shared by *--spp*, but at least 4 each, and 16 light samples; where there are "
+                        "fewer than 9 samples, or a noise level, they also have 8 further camera rays in all. "
+                        "With *--noise 0* a small picture beforehand chooses these numbers by place, and "
+                        "samples have no more gather rays than that, with a noise level 1 to 64. Then it is "
+                        "decided, and again at four times as many samples."},
      FIELD(gather_samples),
      .kind = SETTING_INTEGER,
      .least = 1,
