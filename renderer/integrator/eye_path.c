@@ -64,7 +64,7 @@ static part_shares shares_behind_vertex(const part_shares *before, const vertex 
 static float add_light(eye_sample *sample, const eye_path *path, const part_shares *parts, int scatterings, rgb brought,
                        bool is_sky)
 {
-    float kept = eye_sample_bound(sample, path->share * path->shared, scatterings, brought);
+    float kept = eye_sample_bound(sample, eye_path_shared(path), scatterings, brought);
     if (kept < 1.0f)
         brought = rgb_scale(brought, kept);
     sample->radiance = rgb_add(sample->radiance, brought);
@@ -119,7 +119,7 @@ void eye_path_add_escaped(const transport *t, const eye_path *path, eye_sample *
 {
     light_group_sums groups;
     rgb *by_group = light_group_sums_begin(&groups, t->wants_groups);
-    rgb weight = rgb_scale(path->throughput, path->share * path->shared);
+    rgb weight = rgb_scale(path->throughput, eye_path_shared(path));
     rgb escaped = direct_light_escaped(t, path->scattered_from, path->scattered_normal, path->ray.direction,
                                        path->scattered_pdf, weighted_against(path), by_group);
     float kept = add_light(sample, path, path->wants_parts ? &path->parts : NULL, path->scatterings,
@@ -132,7 +132,7 @@ void eye_path_add_emitted(const transport *t, const eye_path *path, const vertex
     rgb emitted = vertex_emission(t->s, v);
     if (rgb_is_black(emitted))
         return;
-    float weight = path->share * path->shared;
+    float weight = eye_path_shared(path);
     if (path->scattered_pdf > 0.0f)
         weight *= direct_light_scatter_weight(t, path->scattered_from, path->scattered_normal, v, path->scattered_pdf,
                                               weighted_against(path));
@@ -149,7 +149,7 @@ void eye_path_add_direct(const transport *t, eye_worker *worker, const eye_path 
     float u_pick = sampler_2d(&path->where, SAMPLE_LIGHT_PICK, key).x;
     lamp_light direct = direct_light_sample_lamp(t, worker, v, lobes, u_pick,
                                                  sampler_2d(&path->where, SAMPLE_LIGHT, key), 1, (float)scatter_count);
-    rgb brought = rgb_mul(rgb_scale(path->throughput, path->share * path->shared), direct.radiance);
+    rgb brought = rgb_mul(rgb_scale(path->throughput, eye_path_shared(path)), direct.radiance);
     if (rgb_is_black(brought))
         return;
     const light *lamp = &t->s->lights[direct.lamp];

@@ -42,6 +42,9 @@ eye_path eye_path_begin(const camera_sample *from, int roulette_after, bool want
 /* Returns the number of the vertex by which random numbers are drawn. */
 static inline int eye_path_key(const eye_path *path) { return path->vertex + path->vertex_key; }
 
+/* Returns the path's share of the camera sample in light that all camera rays bring. */
+static inline float eye_path_shared(const eye_path *path) { return path->share * path->shared; }
+
 /* Returns how many more scatterings the settings allow. */
 static inline int eye_path_scatterings_left(const transport *t, const eye_path *path)
 {

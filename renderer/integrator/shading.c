@@ -94,7 +94,7 @@ static direct_light direct_radiance(const transport *t, eye_worker *worker, cons
                                                 eye_path_key(path) + SAMPLER_KEY_RAYS * (int)sampler_bits(lights),
                                                 transport_sample_counts(t, lights, path->scatterings == 0), by_group);
     if (path->scatterings == 0) {
-        float weight = path->share * path->shared * rgb_mean(path->throughput);
+        float weight = eye_path_shared(path) * rgb_mean(path->throughput);
         sample->light_cost += (uint32_t)(eye_worker_cost(worker) - before);
         sample->light_variance += weight * weight * direct.variance;
     }
@@ -168,7 +168,7 @@ static void add_diffuse(const transport *t, eye_sample *sample, const diffuse_li
 {
     int scatterings = path->scatterings;
     bool is_first = scatterings == 0;
-    float share = path->share, shared = share * path->shared;
+    float share = path->share, shared = eye_path_shared(path);
     rgb throughput = rgb_scale(path->throughput, share), throughput_shared = rgb_scale(path->throughput, shared);
     rgb direct = rgb_mul(throughput_shared, diffuse->direct), caustic = rgb_mul(throughput, diffuse->caustic),
         estimated = rgb_mul(throughput_shared, diffuse->estimated);

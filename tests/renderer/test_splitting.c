@@ -34,8 +34,8 @@ static ag_render_settings settings_of(float noise_level, int samples)
     return s;
 }
 
-/* What four samples of a block's pixels are to have: variances of their own, by one gather ray, by one light sample and
- * by one camera ray; and the mean square of their caustics. */
+/* A block's pixels get four samples of these variances: of their own, by one gather ray, by one light sample and by one
+ * camera ray; and of this mean square of caustics. */
 typedef struct made_up {
     double own, by_ray, by_light, caustic, by_camera_ray;
 } made_up;
