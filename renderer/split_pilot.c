@@ -28,12 +28,14 @@ static ag_render_settings pilot_settings(const ag_render_settings *settings, flo
     return small;
 }
 
-/* Errors: those of rendering_create_film, with a film or without. */
-static ag_status create_film(ag_rendering *pilot)
+/* scale: the width of the large picture's pixels, in those of the small one. Errors: those of rendering_create_film,
+ * with a film or without. */
+static ag_status create_film(ag_rendering *pilot, float scale)
 {
     AG_TRY(rendering_create_film(pilot));
     ag_film *film = pilot->film;
-    film->filter.radius[0] = film->filter.radius[1] = 0.0f; /* splitting.h says why */
+    for (int axis = 0; axis < 2; axis++)
+        film->filter.radius[axis] *= scale;
     for (size_t i = 0; i < film_area_count(film); i++)
         film->splits[i].counts = SPLIT;
     return AG_OK;
@@ -72,7 +74,7 @@ ag_status split_pilot_run(ag_rendering *r)
                           .film = r->pilot,
                           .is_pilot = true};
     if (!r->pilot) {
-        ag_status made = create_film(&pilot);
+        ag_status made = create_film(&pilot, scale);
         r->pilot = pilot.film; /* owned by the rendering, which frees it */
         AG_TRY(made);
     }

@@ -12,8 +12,9 @@ enum { ADAPTIVE_SAMPLES = 64 };
  * are enough find that out, and behind windows, where light comes from is what is known least. */
 enum { GATHER_RAYS_PER_LIGHT_SAMPLE = 8, FIRST_LIGHTS = 16 };
 enum { RAYS_MAX = 64, LIGHTS_MAX = 16, FURTHER_MAX = 8 };
-/* The first samples of a pixel, before its block chooses, have so many further camera rays together. */
-enum { FIRST_FURTHER = 8 };
+/* Further camera rays of each of the first samples, before a block has chosen: with a level of noise; and at least,
+ * with a fixed number of samples that is small, since the small picture may have looked past small things. */
+enum { FIRST_FURTHER = 2, FURTHER_OF_FEW = 1, FEW_SAMPLES = 8 };
 /* Caustics that a block's first samples have missed are 2 to this power times as bright, at most; blocks that stop at a
  * level of noise might stop before they are asked for. */
 enum { CAUSTIC_BITS_FIXED = 2, CAUSTIC_BITS_ADAPTIVE = 1 };
@@ -45,11 +46,11 @@ static uint32_t most_further(const ag_render_settings *settings, bool splits_sam
 
 static uint32_t first_further(const ag_render_settings *settings, bool splits_samples)
 {
-    uint32_t count = most_further(settings, splits_samples);
-    const uint32_t samples = settings->noise_level > 0.0f ? SPLIT_FIRST_BARRIER : (uint32_t)settings->samples_per_pixel;
-    while (count > 0 && count * samples > FIRST_FURTHER)
-        count /= 2;
-    return count;
+    if (most_further(settings, splits_samples) == 0)
+        return 0;
+    return settings->noise_level > 0.0f                 ? FIRST_FURTHER
+           : settings->samples_per_pixel <= FEW_SAMPLES ? FURTHER_OF_FEW
+                                                        : 0;
 }
 
 split_counts sample_split_first(const ag_render_settings *settings, bool splits_samples)

@@ -38,20 +38,28 @@ typedef struct block_sums {
     double cost_of_ray, cost_of_light, cost_of_caustic, cost_of_further, cost_of_rest;
 } block_sums;
 
+/* The bounds of a block's choice. */
+typedef struct choice {
+    double scale; /* from radiance to what is shown */
+    split_counts least, most;
+    uint32_t least_lights; /* of all camera rays */
+    double uneven;         /* the share of variance by camera rays that is left in the mean of a pixel's samples */
+} choice;
+
 /* Returns the variance of a sum over samples. */
 static double variance_of(float sum, float squares, double count)
 {
     return fmax((double)squares - (double)sum * (double)sum / count, 0.0) / (count - 1.0);
 }
 
-/* Adds a pixel that has had so many samples, two or more. scale: from radiance to what is shown. */
-static void add_pixel(const split_sums *pixel, double count, double scale, block_sums *sums)
+/* Adds a pixel that has had so many samples, two or more. */
+static void add_pixel(const split_sums *pixel, double count, const choice *c, block_sums *sums)
 {
     double mean = (double)pixel->value / count, lights_known = (double)pixel->lights_known;
     double variance = variance_of(pixel->value, pixel->square, count);
     double own = variance_of(pixel->own, pixel->own_square, count);
     double by_light = lights_known > 0.0 ? (double)pixel->by_light / lights_known : 0.0;
-    double weight = noise_shown_variance(scale * mean, scale * scale);
+    double weight = noise_shown_variance(c->scale * mean, c->scale * c->scale);
     /* not cut at 0 here, since variances of few samples differ by chance */
     double shared = variance - own - by_light * (double)pixel->per_light / count;
     sums->pixels += 1.0;
@@ -60,7 +68,7 @@ static void add_pixel(const split_sums *pixel, double count, double scale, block
     sums->by_parts += weight * (double)pixel->by_parts / count;
     sums->by_ray += weight * (double)pixel->by_ray / count;
     sums->by_light += weight * by_light;
-    sums->by_camera_ray += weight * shared * count / (double)pixel->per_camera_ray;
+    sums->by_camera_ray += weight * c->uneven * shared * count / (double)pixel->per_camera_ray;
     sums->caustic += weight * (double)pixel->caustic / count;
     sums->cost_of_ray += (double)pixel->cost_of_ray / count;
     sums->cost_of_light += (double)pixel->cost_of_light / count;
@@ -68,14 +76,6 @@ static void add_pixel(const split_sums *pixel, double count, double scale, block
     sums->cost_of_further += (double)pixel->cost_of_further / count;
     sums->cost_of_rest += (double)pixel->cost_of_rest / count;
 }
-
-/* The bounds of a block's choice. */
-typedef struct choice {
-    double scale; /* from radiance to what is shown */
-    split_counts least, most;
-    uint32_t least_lights; /* of all camera rays */
-    double uneven;         /* the share of variance by camera rays that is left in the mean of a pixel's samples */
-} choice;
 
 /* Variance and cost of camera samples without the parts that are chosen, summed over the block. */
 typedef struct camera_part {
@@ -242,9 +242,8 @@ static void decide_block(struct ag_film *film, film_area block, uint32_t barrier
             size_t pixel = film_pixel_at(film, x, y);
             if (film->counts[pixel] != barrier)
                 return;
-            add_pixel(&film->splits[pixel], (double)barrier, c->scale, &sums);
+            add_pixel(&film->splits[pixel], (double)barrier, c, &sums);
         }
-    sums.by_camera_ray *= c->uneven;
     split_counts before = film->splits[film_pixel_at(film, block.x0, block.y0)].counts;
     split_counts counts = best_counts(film, &sums, c);
     uint32_t used = (barrier + before.ray_shift) * before.rays;
@@ -285,7 +284,7 @@ static split_counts counts_by_pilot(const struct ag_film *film, const struct ag_
     for (int row = y0; row <= y1; row++)
         for (int column = x0; column <= x1; column++) {
             size_t pixel = film_pixel_at(pilot, column, row);
-            add_pixel(&pilot->splits[pixel], (double)pilot->counts[pixel], c->scale, &sums);
+            add_pixel(&pilot->splits[pixel], (double)pilot->counts[pixel], c, &sums);
         }
     split_counts counts = best_counts(film, &sums, c), unknown = sample_split_first(settings, true);
     if (!(sums.cost_of_ray > 0.0)) /* the pilot has met nothing there that gathers */
@@ -310,8 +309,9 @@ static void sum_groups(const struct ag_film *pilot, const choice *c, block_sums 
             for (int y = y0; y < y0 + GROUP && y < pilot->full_height; y++)
                 for (int x = x0; x < x0 + GROUP && x < pilot->full_width; x++) {
                     size_t pixel = film_pixel_at(pilot, x, y);
-                    add_pixel(&pilot->splits[pixel], (double)pilot->counts[pixel], c->scale, out_sums);
+                    add_pixel(&pilot->splits[pixel], (double)pilot->counts[pixel], c, out_sums);
                 }
+            out_sums->own = out_sums->by_parts + c->uneven * (out_sums->own - out_sums->by_parts);
         }
 }
 
@@ -369,9 +369,11 @@ ag_status splitting_begin(struct ag_film *film, const struct ag_film *pilot, dou
     const double clean = FIXED_CLEAN * FIXED_CLEAN * samples;
     split_prior *prior = &film->prior;
     AG_TRY(find_cost_per_variance(pilot, &c, fixed, clean, &prior->cost_per_variance));
-    c.least = (split_counts){.rays = SPLIT_FIRST_RAYS_MIN,
-                             .lights = sample_split_goes_on(settings, true) ? FIRST_LIGHTS_OF_RAY_MIN : 1,
-                             .further = film_first_split(film, settings).further};
+    c.least.further = film_first_split(film, settings).further;
+    if (sample_split_goes_on(settings, true)) {
+        c.least.rays = SPLIT_FIRST_RAYS_MIN;
+        c.least.lights = FIRST_LIGHTS_OF_RAY_MIN;
+    }
     c.least_lights = FIRST_LIGHTS_MIN;
     if (!prior->first)
         prior->first = malloc((film_block_number(film, right - 1, bottom - 1) + 1) * sizeof *prior->first);

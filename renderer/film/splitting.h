@@ -19,11 +19,10 @@
  * counts is the product of the whole frame's variance E and cost F. This cost includes what the photon maps cost,
  * shared out among the camera samples. The product is least where F / E stands for v / V above, and for v / (V - C): at
  * n = sqrt(G / g * F / E), m = sqrt(L / l * F / E), k = sqrt(S / s * F / E), p = sqrt(C / c * F / E). A small picture
- * of the whole frame tells F / E. Each of its samples lies in the middle of its pixel: in the large picture, what
- * differs across a pixel is spread so evenly among its samples that little of it is left in their mean (Mitchell,
- * "Consequences of Stratified Sampling in Graphics", 1996). With few samples it is not so: the first ones then have
- * several camera rays whatever it tells. By Mitchell the variance that an edge leaves in the mean of N even samples is
- * as N^-1.5, so of what a block's own samples tell of S, the share 1 / sqrt(N) counts.
+ * of the whole frame tells F / E. Its samples are spread over as much as a pixel of the large picture, in the middle of
+ * each of its own. In the large picture, what differs across a pixel is spread evenly among its N samples: the variance
+ * that an edge leaves in their mean is as N^-1.5 (Mitchell, "Consequences of Stratified Sampling in Graphics", 1996).
+ * So of S, and of the V that goes into E, the share 1 / sqrt(N) counts.
  *
  * The numbers are chosen for blocks, as in adaptive.h. With a fixed number of samples, the small picture chooses those
  * of the first ones; later ones are chosen by the block's own samples. Costs are numbers of rays, never times. How a
