@@ -43,7 +43,7 @@ typedef struct choice {
     double scale; /* from radiance to what is shown */
     split_counts least, most;
     uint32_t least_lights; /* of all camera rays */
-    double uneven;         /* the share of variance by camera rays that is left in the mean of a pixel's samples */
+    double uneven;         /* the share of variance between camera rays that is left in the mean of a pixel's samples */
 } choice;
 
 /* Returns the variance of a sum over samples. */
@@ -311,6 +311,7 @@ static void sum_groups(const struct ag_film *pilot, const choice *c, block_sums 
                     size_t pixel = film_pixel_at(pilot, x, y);
                     add_pixel(&pilot->splits[pixel], (double)pilot->counts[pixel], c, out_sums);
                 }
+            /* of edges in the light that the own camera rays alone bring, as much is left as of those in the other */
             out_sums->own = out_sums->by_parts + c->uneven * (out_sums->own - out_sums->by_parts);
         }
 }

@@ -91,7 +91,7 @@ static void test_nothing_else(void **state)
     for (int k = 0; k < INTEGRATOR_COUNT; k++) {
         picture p = RENDER(scene, INTEGRATORS[k], "--spp=1");
         for (int i = 0; i < p.width * p.height * 3; i++)
-            /* the shares of nine camera rays are rounded */
+            /* the shares of several camera rays are rounded */
             assert_true(fabsf(p.pixels[i] / (1.0f + (float)(i % 3)) - 1.0f) < 0x1p-21f);
         picture_reset(&p);
     }
