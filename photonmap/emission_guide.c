@@ -266,9 +266,9 @@ emission_start emission_guide_sample(const emission_guide *guide, rng *random, f
     return start;
 }
 
-emission_numbers emission_start_numbers(const emission_start *start)
+emission_numbers emission_start_numbers(const emission_start *start, const light_target *focus)
 {
-    return (emission_numbers){{start->u[1], start->u[2]}, {start->u[3], start->u[4]}, start->u[5]};
+    return (emission_numbers){{start->u[1], start->u[2]}, {start->u[3], start->u[4]}, start->u[5], focus};
 }
 
 emission_start emission_start_of(float u_light, const emission_numbers *numbers)

@@ -52,8 +52,8 @@ float emission_guide_density(const emission_guide *guide, const emission_start *
 
 /* Draws the uniform random numbers of a start. */
 emission_start emission_start_draw(rng *random);
-/* Returns the numbers of a start in the form that light_emit takes. */
-emission_numbers emission_start_numbers(const emission_start *start);
+/* Returns the numbers of a start in the form that light_emit takes, with that focus, which is borrowed; NULL: none. */
+emission_numbers emission_start_numbers(const emission_start *start, const light_target *focus);
 /* Returns the start of these numbers, from the lamp that u_light picks. */
 emission_start emission_start_of(float u_light, const emission_numbers *numbers);
 

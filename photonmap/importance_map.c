@@ -1,6 +1,9 @@
 /* importance_map.c: see importance_map.h. */
 #include "importance_map.h"
 
+#include "math/compare_floats.h"
+#include "status.h"
+
 #include <stdlib.h>
 
 /* A cube is divided while it holds more points than LEAF_MOST: a surface that passes through leaves about a quarter of
@@ -139,18 +142,46 @@ static ag_status build(const query_point *points, uint32_t count, float unit, bo
     return AG_OK;
 }
 
+/* The share of the points that the focus holds: what gather rays see of a landscape is left out. */
+static const float FOCUS_SHARE = 0.9f;
+
+/* The ball around the median of each coordinate that holds FOCUS_SHARE of the points. */
+static ag_status find_focus(const query_point *points, uint32_t count, light_target *out_focus)
+{
+    float *values = malloc(count * sizeof *values), middle[3];
+    if (!values)
+        return AG_ERROR_MEMORY;
+    for (int axis = 0; axis < 3; axis++) {
+        for (uint32_t i = 0; i < count; i++)
+            values[i] = component(points[i].position, axis);
+        qsort(values, count, sizeof *values, compare_floats);
+        middle[axis] = values[count / 2];
+    }
+    out_focus->center = (vec3){middle[0], middle[1], middle[2]};
+    for (uint32_t i = 0; i < count; i++)
+        values[i] = vec3_distance_squared(points[i].position, out_focus->center);
+    qsort(values, count, sizeof *values, compare_floats);
+    out_focus->radius = sqrtf(values[(uint32_t)(FOCUS_SHARE * (float)count)]);
+    free(values);
+    return AG_OK;
+}
+
 ag_status importance_map_create(const query_point *points, uint32_t count, importance_map *out_importance)
 {
     *out_importance = (importance_map){0};
     if (count == 0)
         return AG_OK;
+    light_target focus;
+    AG_TRY(find_focus(points, count, &focus));
     vec3 low = points[0].position, high = low;
     for (uint32_t i = 1; i < count; i++) {
         vec3 p = points[i].position;
         low = (vec3){fminf(low.x, p.x), fminf(low.y, p.y), fminf(low.z, p.z)};
         high = (vec3){fmaxf(high.x, p.x), fmaxf(high.y, p.y), fmaxf(high.z, p.z)};
     }
-    return build(points, count, 1.0f / (float)count, false, low, high, out_importance);
+    AG_TRY(build(points, count, 1.0f / (float)count, false, low, high, out_importance));
+    out_importance->focus = focus;
+    return AG_OK;
 }
 
 ag_status importance_map_create_smooth(const query_point *points, uint32_t count, uint32_t whole, vec3 low, vec3 high,

@@ -8,8 +8,7 @@
 #ifndef AFTERGLOW_IMPORTANCE_MAP_H
 #define AFTERGLOW_IMPORTANCE_MAP_H
 
-#include "afterglow/base.h"
-#include "math/vec3.h"
+#include "light/light.h"
 
 #include <stdint.h>
 
@@ -23,16 +22,17 @@ typedef struct importance_node importance_node;
 typedef struct importance_map {
     importance_node *nodes; /* owned; the six roots first */
     uint32_t node_count;
-    vec3 corner; /* of the cube that the trees subdivide */
-    float size;  /* length of its edge, scene units */
+    vec3 corner;        /* of the cube that the trees subdivide */
+    float size;         /* length of its edge, scene units */
+    light_target focus; /* a ball around most of the points; radius 0: there are none */
 } importance_map;
 
-/* Builds the map from points. Without points all importance is 0. Errors: AG_ERROR_MEMORY. */
+/* Builds the map from points, and finds their focus. Without points all importance is 0. Errors: AG_ERROR_MEMORY. */
 ag_status importance_map_create(const query_point *points, uint32_t count, importance_map *out_importance);
 
 /* Builds the map from a sparse random sample: `count` of `whole` (>= 1) points, all between low and high. A part of a
- * surface without points counts as up to one point, depending on the number of points around it. Errors:
- * AG_ERROR_MEMORY. */
+ * surface without points counts as up to one point, depending on the number of points around it. It has no focus.
+ * Errors: AG_ERROR_MEMORY. */
 ag_status importance_map_create_smooth(const query_point *points, uint32_t count, uint32_t whole, vec3 low, vec3 high,
                                        importance_map *out_importance);
 void importance_map_reset(importance_map *importance);

@@ -149,8 +149,42 @@ static void hand_over_guides(learner *l, emission_guide *last, photon_aim *out_a
     l->guides[1] = (emission_guide){0};
 }
 
+/* Light is requested around the focus if the scene is so many times as large. */
+static const float FOCUS_RATIO = 4.0f;
+
+/* Returns the focus of the requests; NULL where it is no small part of what light from afar falls on, or where there is
+ * no such light. */
+static const light_target *find_focus(const scene *s, const light_target *requested)
+{
+    float around = s->detail_radius > 0.0f ? s->detail_radius : s->bounding_radius;
+    bool is_small = requested->radius > 0.0f && FOCUS_RATIO * requested->radius <= around;
+    for (uint32_t i = 0; is_small && i < s->light_count; i++)
+        if (light_is_everywhere(&s->lights[i]))
+            return requested;
+    return NULL;
+}
+
+/* Finds the numbers with the focus of starts that were found without it. */
+static void move_to_focus(const scene *s, const light_target *focus, const emission_starts *starts)
+{
+    for (uint32_t i = 0; i < starts->count; i++) {
+        emission_start *start = &starts->trials[i].start;
+        float probability;
+        light_emission sent;
+        rng unused = rng_make(0, 0, 0); /* light from afar needs no further numbers */
+        const light *lamp = &s->lights[scene_pick_light_by_power(s, start->u[0], &probability)];
+        emission_numbers numbers = emission_start_numbers(start, NULL);
+        if (!light_is_everywhere(lamp) || !light_emit(s, lamp, NULL, &numbers, &unused, &sent))
+            continue;
+        const light_sample towards = {.direction = vec3_negate(sent.direction), .distance = INFINITY};
+        numbers.focus = focus;
+        if (light_emission_numbers(s, lamp, sent.origin, numbers.direction, &towards, &numbers))
+            *start = emission_start_of(start->u[0], &numbers);
+    }
+}
+
 /* Traces rounds of trials, by power alone and then by what those before have told, and makes the last guide of them
- * all, unless enough paths arrive without one. */
+ * all, unless enough paths arrive without one, and without a focus. */
 static ag_status learn(learner *l, const emission_starts *starts, photon_aim *out_aim)
 {
     uint32_t counts[ROUNDS_MAX + 1] = {0};
@@ -159,13 +193,13 @@ static ag_status learn(learner *l, const emission_starts *starts, photon_aim *ou
         status = trace_round(l, least_of(l->count, UNGUIDED_ROUNDS_MAX * l->round_trials - l->count));
     counts[0] = l->count;
     l->unguided = l->counts;
-    if (useful_share(&l->unguided) >= ENOUGH_USEFUL &&
+    if (!l->settings.focus && useful_share(&l->unguided) >= ENOUGH_USEFUL &&
         (double)l->unguided.asked >= ENOUGH_PER_PATH * (double)l->unguided.paths)
         return status;
     for (uint32_t round = 1; status == AG_OK; round++) {
         emission_guide *next = &l->guides[round];
         AG_TRY(make_guide(l, round, starts));
-        if (!next->nodes || (next != l->starts_guide && next->gain < LEAST_GAIN))
+        if (!next->nodes || (!l->settings.focus && next != l->starts_guide && next->gain < LEAST_GAIN))
             return AG_OK;
         if (round == last_round(l)) {
             hand_over_guides(l, next, out_aim);
@@ -205,11 +239,15 @@ ag_status photon_aim_learn(const scene *s, run_context *run, const photon_tracin
     if (!(share > 0.0f) || !settings->asked || !settings->asked->nodes)
         return AG_OK;
     learner l = {.s = s, .run = run, .settings = *settings, .ways = settings->ways, .share = share};
+    l.settings.focus = find_focus(s, &settings->asked->focus);
+    if (l.settings.focus)
+        move_to_focus(s, l.settings.focus, starts);
     l.round_trials = photon_aim_round_trials(settings->wanted);
     l.trials = malloc((size_t)(UNGUIDED_ROUNDS_MAX + ROUNDS_MAX) * l.round_trials * sizeof *l.trials);
     ag_status status = l.trials ? learn(&l, starts, out_aim) : AG_ERROR_MEMORY;
     out_aim->tried = l.counts;
     if (out_aim->guide.nodes) {
+        out_aim->focus = l.settings.focus;
         out_aim->wanted = wanted_by_power(&l.unguided, settings->wanted);
         out_aim->stored_share = settings->paths == 0 ? l.stored_share : 1.0f;
         out_aim->split_above = l.split_above;
@@ -225,6 +263,7 @@ void photon_aim_apply(const photon_aim *aim, photon_tracing_settings *in_out_set
 {
     bool is_aimed = aim->guide.nodes;
     in_out_settings->guide = is_aimed ? &aim->guide : NULL;
+    in_out_settings->focus = aim->focus;
     in_out_settings->asked = is_aimed ? in_out_settings->asked : NULL;
     in_out_settings->ways = is_aimed ? in_out_settings->ways : NULL;
     in_out_settings->wanted = aim->wanted;

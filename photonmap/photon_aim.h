@@ -17,6 +17,7 @@ typedef struct emission_starts {
 typedef struct photon_aim {
     emission_guide guide;        /* owned; empty: photons are emitted by power alone */
     emission_guide starts_guide; /* owned; built from the starts alone; `other` of guide where there were enough */
+    const light_target *focus;   /* borrowed from the requests: see photon_tracing_settings; NULL: none */
     uint32_t wanted;             /* photons to store, > 0 */
     /* As in photon_tracing_settings; without a guide 1, 0 and 0. */
     float stored_share, split_above, caustic_root;

@@ -174,7 +174,7 @@ static bool begin_path(photon_tracer *t, uint64_t number, photon_path *out_path)
     if (t->trial)
         *t->trial = (emission_trial){begun, 0.0f, density};
     const light *lamp = &s->lights[scene_pick_light_by_power(s, begun.u[0], &probability)];
-    emission_numbers numbers = emission_start_numbers(&begun);
+    emission_numbers numbers = emission_start_numbers(&begun, settings->focus);
     light_emission start;
     if (!(probability > 0.0f) || !light_emit(s, lamp, t->target, &numbers, &random, &start))
         return false;

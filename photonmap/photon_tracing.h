@@ -67,6 +67,7 @@ typedef struct photon_tracing_settings {
     uint64_t seed;
     /* Borrowed; NULL: paths begin by power alone, and every arrival is stored. */
     const emission_guide *guide;    /* where paths begin */
+    const light_target *focus;      /* light from afar is densest around it; NULL: around the scene's detail */
     const importance_map *asked;    /* where light is requested; elsewhere no denser photons than by power alone */
     const importance_map *onward;   /* diffuse surfaces whose light arrives where it is requested */
     const struct onward_ways *ways; /* directions in which surfaces send it there */

@@ -58,6 +58,9 @@ static ag_status trace_aimed(ag_context *context, const scene *s, float share, p
         log_message(context->log, AG_LOG_INFO,
                     "photons are aimed: %u cells, %.3g times less variance expected, after %llu trials",
                     (guide->node_count + 1) / 2, (double)guide->gain, (unsigned long long)aim.tried.paths);
+    if (aim.focus)
+        log_message(context->log, AG_LOG_INFO, "light from afar is densest within %.3g of where it is asked for",
+                    (double)aim.focus->radius);
     photon_aim_apply(&aim, &tracing);
     if (status == AG_OK)
         status = photon_tracing_run(s, &context->run, &tracing, out_set);

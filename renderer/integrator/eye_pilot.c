@@ -75,7 +75,7 @@ static void look_for_lamp(const transport *t, eye_worker *worker, const vertex *
     light_sample towards;
     if (!(probability > 0.0f) || !light_sample_from_point(s, lamp, vertex_position(v), u, &towards))
         return;
-    emission_numbers numbers = emission_start_numbers(&found.start);
+    emission_numbers numbers = emission_start_numbers(&found.start, NULL);
     rgb reflected = bsdf_evaluate(&v->scattering, BSDF_ALL, BSDF_RADIANCE, towards.direction);
     rgb brought = rgb_mul(rgb_mul(throughput, reflected), towards.radiance);
     if (rgb_is_black(brought) || !light_emission_numbers(s, lamp, vertex_position(v), u, &towards, &numbers))

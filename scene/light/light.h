@@ -194,8 +194,9 @@ typedef struct light_target {
  * that a guide can select useful parts of a light by them. */
 typedef struct emission_numbers {
     vec2 direction;
-    vec2 position; /* on an area light or a portal; for distant lights across the direction */
-    float part;    /* picks the side of an area light, or one of the nested balls around small targets */
+    vec2 position;             /* on an area light or a portal; for distant lights across the direction */
+    float part;                /* picks the side of an area light, or one of the nested balls around small targets */
+    const light_target *focus; /* borrowed; light from afar is densest around it; NULL: around the scene's detail */
 } emission_numbers;
 
 /* Samples a photon's start. target NULL: the whole light. Else only a part of the light that contains all rays which

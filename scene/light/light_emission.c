@@ -25,34 +25,41 @@ bool light_aim_at(const light_target *target, vec3 origin, float own_cone, vec2 
     return true;
 }
 
-/* Where small things stand among giants, light from afar that were spread evenly over the scene would hardly find them.
- * Balls around them, each twice as large as the one before, get equal shares of it: so photons thin out with the square
- * of the distance, about as what far light does to the small things. The last ball is `whole`. */
-static int nested_ball_count(const scene *s, const light_target *whole)
+/* Where small things stand among giants, or a room in a landscape, light from afar that were spread evenly over the
+ * scene would hardly find them. Balls around them, each twice as large as the one before, get equal shares of it: so
+ * photons thin out with the square of the distance, about as what far light does to what is in the middle. */
+typedef struct nested_balls {
+    light_target inner, whole; /* the first and the last of them */
+    int count;
+} nested_balls;
+
+static nested_balls nested_balls_make(const scene *s, const light_target *whole, const light_target *focus)
 {
-    if (!(s->detail_radius > 0.0f) || s->detail_radius >= whole->radius)
-        return 1;
+    nested_balls balls = {focus ? *focus : (light_target){s->detail_center, s->detail_radius}, *whole, 1};
+    if (!(balls.inner.radius > 0.0f) || balls.inner.radius >= whole->radius)
+        return balls;
     /* the octaves, rounded up: by its bits, since no two machines agree on logarithms */
     int octaves;
-    float fraction = frexpf(fminf(whole->radius / s->detail_radius, 0x1p100f), &octaves);
-    return 1 + octaves - (fraction == 0.5f);
+    float fraction = frexpf(fminf(whole->radius / balls.inner.radius, 0x1p100f), &octaves);
+    balls.count = 1 + octaves - (fraction == 0.5f);
+    return balls;
 }
 
-static light_target nested_ball(const scene *s, const light_target *whole, int i, int count)
+static light_target nested_ball(const nested_balls *balls, int i)
 {
-    return i == count - 1 ? *whole : (light_target){s->detail_center, ldexpf(s->detail_radius, i)};
+    return i == balls->count - 1 ? balls->whole : (light_target){balls->inner.center, ldexpf(balls->inner.radius, i)};
 }
 
 /* The density, per area across direction, with which rays along it come through that point. */
-static float nested_density(const scene *s, const light_target *whole, int count, vec3 point, vec3 direction)
+static float nested_density(const nested_balls *balls, vec3 point, vec3 direction)
 {
     float density = 0.0f;
-    for (int i = 0; i < count; i++) {
-        light_target ball = nested_ball(s, whole, i, count);
+    for (int i = 0; i < balls->count; i++) {
+        light_target ball = nested_ball(balls, i);
         vec3 offset = vec3_sub(point, ball.center);
         offset = vec3_add_scaled(offset, direction, -vec3_dot(offset, direction));
-        if (i == count - 1 || vec3_dot(offset, offset) <= ball.radius * ball.radius)
-            density += 1.0f / ((float)count * AG_PI * ball.radius * ball.radius);
+        if (i == balls->count - 1 || vec3_dot(offset, offset) <= ball.radius * ball.radius)
+            density += 1.0f / ((float)balls->count * AG_PI * ball.radius * ball.radius);
     }
     return density;
 }
@@ -63,19 +70,20 @@ static bool start_from_afar(const scene *s, const light_target *whole, vec3 dire
                             vec3 *out_origin, float *out_density)
 {
     frame f = frame_from_z(direction);
-    int count = nested_ball_count(s, whole), picked = count - 1;
-    if (count > 1)
-        picked = (int)fminf(numbers->part * (float)count, (float)count - 1.0f);
-    light_target ball = nested_ball(s, whole, picked, count);
+    const nested_balls balls = nested_balls_make(s, whole, numbers->focus);
+    int picked = balls.count - 1;
+    if (balls.count > 1)
+        picked = (int)fminf(numbers->part * (float)balls.count, (float)balls.count - 1.0f);
+    light_target ball = nested_ball(&balls, picked);
     vec2 d = sample_disk_concentric(numbers->position);
     vec3 point = vec3_add(ball.center, frame_to_world(&f, (vec3){d.x * ball.radius, d.y * ball.radius, 0.0f}));
     *out_density = 1.0f / (AG_PI * ball.radius * ball.radius);
-    if (count > 1) {
+    if (balls.count > 1) {
         vec3 offset = vec3_sub(point, whole->center);
         offset = vec3_add_scaled(offset, direction, -vec3_dot(offset, direction));
-        if (picked < count - 1 && vec3_dot(offset, offset) > whole->radius * whole->radius)
+        if (picked < balls.count - 1 && vec3_dot(offset, offset) > whole->radius * whole->radius)
             return false;
-        *out_density = nested_density(s, whole, count, point, direction);
+        *out_density = nested_density(&balls, point, direction);
     }
     /* the plane that touches the scene's own ball from behind */
     float behind = vec3_dot(vec3_sub(ball.center, s->bounding_center), direction) + 1.01f * s->bounding_radius;
@@ -88,19 +96,19 @@ bool light_numbers_from_afar(const scene *s, const light *l, vec3 point, vec2 u,
 {
     (void)l;
     light_target whole = {s->bounding_center, s->bounding_radius}, ball;
+    const nested_balls balls = nested_balls_make(s, &whole, in_out_numbers->focus);
     const frame f = frame_from_z(vec3_negate(towards->direction));
-    const int count = nested_ball_count(s, &whole);
     vec3 local;
     int i = -1;
     do { /* of the balls that it passes, the smallest sends most */
-        ball = nested_ball(s, &whole, ++i, count);
+        ball = nested_ball(&balls, ++i);
         local = frame_to_local(&f, vec3_sub(point, ball.center));
-    } while (i < count - 1 && local.x * local.x + local.y * local.y > ball.radius * ball.radius);
+    } while (i < balls.count - 1 && local.x * local.x + local.y * local.y > ball.radius * ball.radius);
     const float inverse = 1.0f / ball.radius;
     in_out_numbers->direction = u;
     in_out_numbers->position = sample_disk_concentric_inverse((vec2){local.x * inverse, local.y * inverse});
-    if (count > 1)
-        in_out_numbers->part = float_below_one(((float)i + in_out_numbers->part) / (float)count);
+    if (balls.count > 1)
+        in_out_numbers->part = float_below_one(((float)i + in_out_numbers->part) / (float)balls.count);
     return true;
 }
 
@@ -153,6 +161,7 @@ emission_numbers emission_numbers_draw(rng *random)
     numbers.direction = rng_vec2(random);
     numbers.position = rng_vec2(random);
     numbers.part = rng_float(random);
+    numbers.focus = NULL;
     return numbers;
 }
 

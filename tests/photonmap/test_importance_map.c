@@ -46,6 +46,29 @@ static void an_even_field_is_even(void **state)
     free(points);
 }
 
+/* Nine in ten questions around one place; the others a kilometre away. */
+static void the_focus_is_around_most_points(void **state)
+{
+    (void)state;
+    const vec3 up = {0.0f, 0.0f, 1.0f};
+    query_point *points = field((vec3){3.0f, -2.0f, 1.0f}, (vec3){5.0f, 2.0f, 1.0f}, up, COUNT);
+    for (int i = 0; i < COUNT; i += 12)
+        points[i].position.x += 1000.0f;
+    importance_map importance;
+    assert_int_equal(importance_map_create(points, COUNT, &importance), AG_OK);
+    assert_close(importance.focus.center.x, 4.0 + 1.0 / 11.0, 0.05);
+    assert_close(importance.focus.center.y, 0.0, 0.1);
+    assert_close(importance.focus.center.z, 1.0, 1e-6);
+    int within = 0;
+    for (int i = 0; i < COUNT; i++)
+        within += vec3_distance_squared(points[i].position, importance.focus.center) <=
+                  importance.focus.radius * importance.focus.radius;
+    assert_close((double)within / COUNT, 0.9, 1e-3);
+    assert_true(importance.focus.radius < 2.4f);
+    importance_map_reset(&importance);
+    free(points);
+}
+
 /* Half of the questions on a hundredth of the area. */
 static void what_is_asked_more_counts_more(void **state)
 {
@@ -128,6 +151,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(an_even_field_is_even),
         cmocka_unit_test(what_is_asked_more_counts_more),
+        cmocka_unit_test(the_focus_is_around_most_points),
         cmocka_unit_test(a_smooth_field_is_nowhere_nothing),
         cmocka_unit_test(odd_fields_are_safe),
     };

@@ -208,6 +208,30 @@ static void a_small_window_is_found_and_its_light_is_right(void **state)
     test_run_reset(&r);
 }
 
+/* The room in a landscape thirty times as large, where light from afar that were spread evenly would meet the window
+ * once in 10^5 paths: it is densest around what is asked for, so the room's light is well known. */
+static void a_room_in_a_landscape_is_found(void **state)
+{
+    (void)state;
+    if (IS_SANITIZED)
+        skip(); /* statistics of what any_number_of_threads_has_the_same_photons runs */
+    test_run r;
+    test_run_init(&r, 2);
+    char shapes[4096];
+    snprintf(shapes, sizeof shapes, "%sTranslate 20 30 -0.02 Shape \"disk\" \"float radius\" [60]\n", ROOM);
+    scene *s = scene_of(&r, shapes, SKY);
+    importance_map asked = ask_inside();
+    assert_true(s->detail_radius == 0.0f);
+    result aimed = trace_seeds(&r, s, (photon_order){.asked = &asked});
+    print_message("inside: share %.4f, direct %.4f +- %.4f of %.4f, all %.4f +- %.4f\n", aimed.share, aimed.direct,
+                  aimed.direct_error, THROUGH_WINDOW, aimed.all, aimed.all_error);
+    assert_close(aimed.direct, THROUGH_WINDOW, 3.0 * aimed.direct_error);
+    assert_true(aimed.direct_error < 0.015 * THROUGH_WINDOW);
+    importance_map_reset(&asked);
+    scene_destroy(s);
+    test_run_reset(&r);
+}
+
 static void no_photon_is_more_than_five_times_as_bright(void **state)
 {
     (void)state;
@@ -453,6 +477,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_small_window_is_found_and_its_light_is_right),
+        cmocka_unit_test(a_room_in_a_landscape_is_found),
         cmocka_unit_test(no_photon_is_more_than_five_times_as_bright),
         cmocka_unit_test(paths_are_split_where_their_light_comes_in),
         cmocka_unit_test(caustics_are_split_by_rough_metal),

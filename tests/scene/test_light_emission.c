@@ -262,13 +262,42 @@ static void aimed_light_carries_the_same_flux(void **state)
     }
 }
 
-/* A ball on a ground ten thousand times as large: light from afar finds it often, and carries no more there, nor in
- * all, than it should. */
+/* The two lights from afar, whose irradiance across their directions is 4 pi times 2 and 2 in green. */
+static const char *const FROM_AFAR[] = {"LightSource \"infinite\" \"rgb L\" [1 2 3]\n",
+                                        "LightSource \"distant\" \"point3 from\" [1 2 9] \"rgb L\" [1 2 3]\n"};
+static const double IRRADIANCE_FROM_AFAR[] = {8.0 * PI, 2.0};
+
+/* The scene's only light, from afar, finds the ball often, and carries no more there, nor in all, than it should. */
+static void expect_found(const scene *s, const light_target *ball, const light_target *focus, double irradiance)
+{
+    double flux = 0.0, all = 0.0, square = 0.0, square_all = 0.0;
+    enum { COUNT = 400000 / FEWER };
+    uint32_t met = 0;
+    rng random = test_random(9);
+    for (int i = 0; i < COUNT; i++) {
+        light_emission e;
+        emission_numbers numbers = emission_numbers_draw(&random);
+        numbers.focus = focus;
+        if (!light_emit(s, &s->lights[0], NULL, &numbers, &random, &e))
+            continue;
+        all += (double)e.flux.g / COUNT;
+        square_all += (double)e.flux.g * (double)e.flux.g / COUNT;
+        if (!meets_ball(&e, ball))
+            continue;
+        met++;
+        flux += (double)e.flux.g / COUNT;
+        square += (double)e.flux.g * (double)e.flux.g / COUNT;
+    }
+    assert_true(met > COUNT / 50);
+    double expected = PI * (double)ball->radius * (double)ball->radius * irradiance;
+    assert_relative(flux, expected, 5.0 * sqrt(square / COUNT) / expected);
+    assert_relative(all, s->lights[0].power.g, 5.0 * sqrt(square_all / COUNT) / all);
+}
+
+/* A ball on a ground ten thousand times as large: spread evenly, one ray in 10^8 would meet it. */
 static void light_from_afar_finds_what_is_small(void **state)
 {
     (void)state;
-    static const char *const LIGHTS[] = {"LightSource \"infinite\" \"rgb L\" [1 2 3]\n",
-                                         "LightSource \"distant\" \"point3 from\" [1 2 9] \"rgb L\" [1 2 3]\n"};
     for (int k = 0; k < 2; k++) {
         test_run r;
         test_run_init(&r, 1);
@@ -276,31 +305,35 @@ static void light_from_afar_finds_what_is_small(void **state)
         snprintf(text, sizeof text,
                  "%sShape \"disk\" \"float radius\" [5000]\nTranslate 1000 30 1\nShape \"sphere\" \"float radius\" "
                  "[0.5]\n",
-                 LIGHTS[k]);
+                 FROM_AFAR[k]);
         scene *s = test_scene_create(&r, text);
         assert_relative(s->detail_radius, 0.5 * sqrt(3.0), 1e-3);
         assert_close(s->detail_center.x, 1000.0, 1e-3);
         const light_target ball = {s->detail_center, 0.5f};
-        double flux = 0.0, all = 0.0, square = 0.0, square_all = 0.0;
-        enum { COUNT = 400000 / FEWER };
-        uint32_t met = 0;
-        rng random = test_random(9);
-        for (int i = 0; i < COUNT; i++) {
-            light_emission e;
-            if (!light_sample_emission(s, &s->lights[0], NULL, &random, &e))
-                continue;
-            all += (double)e.flux.g / COUNT;
-            square_all += (double)e.flux.g * (double)e.flux.g / COUNT;
-            if (!meets_ball(&e, &ball))
-                continue;
-            met++;
-            flux += (double)e.flux.g / COUNT;
-            square += (double)e.flux.g * (double)e.flux.g / COUNT;
-        }
-        assert_true(met > COUNT / 50); /* spread evenly: one in 10^8 */
-        double expected = 2.0 * PI * 0.25 * (k == 0 ? 4.0 * PI : 1.0);
-        assert_relative(flux, expected, 5.0 * sqrt(square / COUNT) / expected);
-        assert_relative(all, s->lights[0].power.g, 5.0 * sqrt(square_all / COUNT) / all);
+        expect_found(s, &ball, NULL, IRRADIANCE_FROM_AFAR[k]);
+        scene_destroy(s);
+        test_run_reset(&r);
+    }
+}
+
+/* A place on a ground without detail: spread evenly, one ray in 10^4 would meet it. A focus that is off the ground's
+ * ball in part, or larger than that, takes no light away. */
+static void light_from_afar_is_densest_around_a_focus(void **state)
+{
+    (void)state;
+    static const light_target PLACE = {{70.0f, 60.0f, 0.0f}, 1.0f}, EDGE = {{0.0f, 99.0f, 10.0f}, 3.0f};
+    for (int k = 0; k < 2; k++) {
+        test_run r;
+        test_run_init(&r, 1);
+        char text[1024];
+        snprintf(text, sizeof text, "%sShape \"disk\" \"float radius\" [100]\n", FROM_AFAR[k]);
+        scene *s = test_scene_create(&r, text);
+        assert_true(s->detail_radius == 0.0f);
+        expect_found(s, &PLACE, &PLACE, IRRADIANCE_FROM_AFAR[k]);
+        const light_target at_edge = {{0.0f, 97.0f, 0.0f}, 3.0f}, all = {s->bounding_center, s->bounding_radius},
+                           larger = {PLACE.center, 2.0f * s->bounding_radius};
+        expect_found(s, &at_edge, &EDGE, IRRADIANCE_FROM_AFAR[k]);
+        expect_found(s, &all, &larger, IRRADIANCE_FROM_AFAR[k]);
         scene_destroy(s);
         test_run_reset(&r);
     }
@@ -345,7 +378,7 @@ static void a_room_has_no_giants(void **state)
 
 /* A photon that begins by the numbers of a way from a point to a lamp passes that point along it. Where numbers end in
  * floats, the point is missed by some millionths of the scene. */
-static void expect_numbers_of_ways(const char *world, bool are_known)
+static void expect_numbers_of_ways(const char *world, bool are_known, const light_target *focus)
 {
     test_run r;
     test_run_init(&r, 1);
@@ -357,6 +390,7 @@ static void expect_numbers_of_ways(const char *world, bool are_known)
         vec3 point = {2.0f * rng_float(&random) - 1.0f, 2.0f * rng_float(&random) - 1.0f, rng_float(&random) + 1.5f};
         vec2 u = rng_vec2(&random);
         emission_numbers numbers = emission_numbers_draw(&random);
+        numbers.focus = focus;
         light_sample towards;
         light_emission e;
         if (!light_sample_from_point(s, l, point, u, &towards))
@@ -410,7 +444,9 @@ static void ways_to_lamps_tell_where_photons_begin(void **state)
     char text[512];
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         snprintf(text, sizeof text, "%s %s", cases[i].lamp, cases[i].world);
-        expect_numbers_of_ways(text, cases[i].are_known);
+        static const light_target FOCUS = {{0.5f, 0.0f, 2.0f}, 0.7f};
+        expect_numbers_of_ways(text, cases[i].are_known, NULL);
+        expect_numbers_of_ways(text, cases[i].are_known, &FOCUS);
     }
 }
 
@@ -423,6 +459,7 @@ int main(void)
         cmocka_unit_test(a_sun_of_an_extent_gives_as_much),
         cmocka_unit_test(aimed_light_carries_the_same_flux),
         cmocka_unit_test(light_from_afar_finds_what_is_small),
+        cmocka_unit_test(light_from_afar_is_densest_around_a_focus),
         cmocka_unit_test(what_is_small_is_found_in_instances),
         cmocka_unit_test(a_room_has_no_giants),
         cmocka_unit_test(ways_to_lamps_tell_where_photons_begin),
