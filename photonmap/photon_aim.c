@@ -149,40 +149,6 @@ static void hand_over_guides(learner *l, emission_guide *last, photon_aim *out_a
     l->guides[1] = (emission_guide){0};
 }
 
-/* Light is requested around the focus if the scene is so many times as large. */
-static const float FOCUS_RATIO = 4.0f;
-
-/* Returns the focus of the requests; NULL where it is no small part of what light from afar falls on, or where there is
- * no such light. */
-static const light_target *find_focus(const scene *s, const light_target *requested)
-{
-    float around = s->detail_radius > 0.0f ? s->detail_radius : s->bounding_radius;
-    bool is_small = requested->radius > 0.0f && FOCUS_RATIO * requested->radius <= around;
-    for (uint32_t i = 0; is_small && i < s->light_count; i++)
-        if (light_is_everywhere(&s->lights[i]))
-            return requested;
-    return NULL;
-}
-
-/* Finds the numbers with the focus of starts that were found without it. */
-static void move_to_focus(const scene *s, const light_target *focus, const emission_starts *starts)
-{
-    for (uint32_t i = 0; i < starts->count; i++) {
-        emission_start *start = &starts->trials[i].start;
-        float probability;
-        light_emission sent;
-        rng unused = rng_make(0, 0, 0); /* light from afar needs no further numbers */
-        const light *lamp = &s->lights[scene_pick_light_by_power(s, start->u[0], &probability)];
-        emission_numbers numbers = emission_start_numbers(start, NULL);
-        if (!light_is_everywhere(lamp) || !light_emit(s, lamp, NULL, &numbers, &unused, &sent))
-            continue;
-        const light_sample towards = {.direction = vec3_negate(sent.direction), .distance = INFINITY};
-        numbers.focus = focus;
-        if (light_emission_numbers(s, lamp, sent.origin, numbers.direction, &towards, &numbers))
-            *start = emission_start_of(start->u[0], &numbers);
-    }
-}
-
 /* Traces rounds of trials, by power alone and then by what those before have told, and makes the last guide of them
  * all, unless enough paths arrive without one, and without a focus. */
 static ag_status learn(learner *l, const emission_starts *starts, photon_aim *out_aim)
@@ -213,6 +179,37 @@ static ag_status learn(learner *l, const emission_starts *starts, photon_aim *ou
     return status;
 }
 
+/* Light is requested around the focus if the scene is so many times as large. */
+static const float FOCUS_RATIO = 4.0f;
+
+/* Returns the focus of the requests; NULL where it is no small part of what light from afar falls on, or where there is
+ * no such light. */
+static const light_target *focus_of(const scene *s, const importance_map *asked)
+{
+    float around = s->detail_radius > 0.0f ? s->detail_radius : s->bounding_radius;
+    bool is_small = asked->focus.radius > 0.0f && FOCUS_RATIO * asked->focus.radius <= around;
+    return is_small && s->everywhere_count > 0 ? &asked->focus : NULL;
+}
+
+void emission_starts_move(const scene *s, const importance_map *asked, emission_starts *in_out_starts)
+{
+    const light_target *focus = focus_of(s, asked);
+    for (uint32_t i = 0; focus && i < in_out_starts->count; i++) {
+        emission_start *start = &in_out_starts->trials[i].start;
+        float probability;
+        light_emission sent;
+        rng unused = rng_make(0, 0, 0); /* light from afar needs no further numbers */
+        const light *lamp = &s->lights[scene_pick_light_by_power(s, start->u[0], &probability)];
+        emission_numbers numbers = emission_start_numbers(start, NULL);
+        if (!light_is_everywhere(lamp) || !light_emit(s, lamp, NULL, &numbers, &unused, &sent))
+            continue;
+        const light_sample towards = {.direction = vec3_negate(sent.direction), .distance = INFINITY};
+        numbers.focus = focus;
+        if (light_emission_numbers(s, lamp, sent.origin, numbers.direction, &towards, &numbers))
+            *start = emission_start_of(start->u[0], &numbers);
+    }
+}
+
 /* The least that is worth an estimate, where power alone would store next to none. */
 enum { WANTED_LEAST = 20000 };
 
@@ -239,9 +236,7 @@ ag_status photon_aim_learn(const scene *s, run_context *run, const photon_tracin
     if (!(share > 0.0f) || !settings->asked || !settings->asked->nodes)
         return AG_OK;
     learner l = {.s = s, .run = run, .settings = *settings, .ways = settings->ways, .share = share};
-    l.settings.focus = find_focus(s, &settings->asked->focus);
-    if (l.settings.focus)
-        move_to_focus(s, l.settings.focus, starts);
+    l.settings.focus = focus_of(s, settings->asked);
     l.round_trials = photon_aim_round_trials(settings->wanted);
     l.trials = malloc((size_t)(UNGUIDED_ROUNDS_MAX + ROUNDS_MAX) * l.round_trials * sizeof *l.trials);
     ag_status status = l.trials ? learn(&l, starts, out_aim) : AG_ERROR_MEMORY;

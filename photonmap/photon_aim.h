@@ -14,6 +14,10 @@ typedef struct emission_starts {
     uint32_t count;
 } emission_starts;
 
+/* Finds the numbers of starts from afar anew, once, for the focus of the requests that they are learned for, if light
+ * is to be denser there. */
+void emission_starts_move(const scene *s, const importance_map *asked, emission_starts *in_out_starts);
+
 typedef struct photon_aim {
     emission_guide guide;        /* owned; empty: photons are emitted by power alone */
     emission_guide starts_guide; /* owned; built from the starts alone; `other` of guide where there were enough */
@@ -28,12 +32,13 @@ typedef struct photon_aim {
 uint32_t photon_aim_round_trials(uint64_t wanted);
 
 /* Learns a guide for photon tracing with these settings. Of the members that photon_aim_apply sets it reads asked, ways
- * and wanted alone. starts: reordered; may be empty. share: of the paths that follow the guide, [0, 1). *out_aim must
- * not be moved. The guide is empty where no trial arrives where light is requested, or where enough paths arrive
- * without a guide. out_aim->wanted is then that of the settings; with a guide it is at most the number of photons that
- * tracing by power alone would have stored before it gave up, since estimates take longer the more photons they find.
- * Photons of many paths tell more of the light than as many photons of few paths, so where a guided path brings many,
- * only a share of them is stored. Errors: AG_ERROR_MEMORY, AG_CANCELLED. */
+ * and wanted alone. starts: moved for what is asked; reordered; may be empty. share: of the paths that follow the
+ * guide, [0, 1). *out_aim must not be moved. The guide is empty where no trial arrives where light is requested, or
+ * where enough paths arrive without a guide and without a focus. out_aim->wanted is then that of the settings; with a
+ * guide it is at most the number of photons that tracing by power alone would have stored before it gave up, since
+ * estimates take longer the more photons they find. Photons of many paths tell more of the light than as many photons
+ * of few paths, so where a guided path brings many, only a share of them is stored. Errors: AG_ERROR_MEMORY,
+ * AG_CANCELLED. */
 ag_status photon_aim_learn(const scene *s, run_context *run, const photon_tracing_settings *settings,
                            const emission_starts *starts, float share, photon_aim *out_aim);
 void photon_aim_reset(photon_aim *aim);

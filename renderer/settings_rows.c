@@ -309,7 +309,7 @@ static const setting_row ROWS[] = {
               "The share of the photon paths that begin where a pilot has found that they bring light to "
               "where the picture asks for it, from 0 to 0.8; 0.8 is the default, and 0 with "
               "*--photon-map* and with *--photon-paths*. The others begin by power alone: the light is the same, and no photon is "
-              "more than five times as bright as without. The pilot looks at the whole frame, so that "
+              "more than five times as bright as by that. The pilot looks at the whole frame, so that "
               "crops and tiles, and other sizes of one shape with the same *--photons*, have the same photons. "
               "A kept map that is aimed serves its own view alone.",
           .is_of_photon_map = true},

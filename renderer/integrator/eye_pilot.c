@@ -332,6 +332,7 @@ static ag_status merge_lists(const pilot_job *job, run_context *run, eye_pilot *
     AG_TRY(merge_ways(job, run, PILOT_WAYS, &out_pilot->ways));
     AG_TRY(merge_ways(job, run, PILOT_SEEN_WAYS, &out_pilot->seen_ways));
     AG_TRY(merge_starts(job, &out_pilot->starts));
+    emission_starts_move(job->t.s, &out_pilot->gathered, &out_pilot->starts);
     return merge_asked(job, PILOT_SEEN, &out_pilot->seen);
 }
 

@@ -182,6 +182,27 @@ static result trace_seeds(test_run *r, const scene *s, photon_order order)
     return sum;
 }
 
+/* A scene in which the inside of the room is asked for. */
+typedef struct asked_room {
+    test_run run;
+    scene *s;
+    importance_map asked;
+} asked_room;
+
+static void open_room(asked_room *room, const char *shapes)
+{
+    test_run_init(&room->run, 2);
+    room->s = scene_of(&room->run, shapes, SKY);
+    room->asked = ask_inside();
+}
+
+static void close_room(asked_room *room)
+{
+    importance_map_reset(&room->asked);
+    scene_destroy(room->s);
+    test_run_reset(&room->run);
+}
+
 /* Straight through the window comes pi radiance area, aimed or not; by way of walls and ground both say the same, and
  * all within 3 sigma. */
 static void a_small_window_is_found_and_its_light_is_right(void **state)
@@ -189,12 +210,10 @@ static void a_small_window_is_found_and_its_light_is_right(void **state)
     (void)state;
     if (IS_SANITIZED)
         skip(); /* statistics of what any_number_of_threads_has_the_same_photons runs */
-    test_run r;
-    test_run_init(&r, 2);
-    scene *s = room_scene(&r, SKY);
-    importance_map asked = ask_inside();
-    photon_order by_power = {0}, by_aim = {.asked = &asked};
-    result plain = trace_seeds(&r, s, by_power), aimed = trace_seeds(&r, s, by_aim);
+    asked_room room;
+    open_room(&room, ROOM);
+    photon_order by_power = {0}, by_aim = {.asked = &room.asked};
+    result plain = trace_seeds(&room.run, room.s, by_power), aimed = trace_seeds(&room.run, room.s, by_aim);
     print_message("inside: share %.4f plain, %.4f aimed; direct %.4f +- %.4f, %.4f +- %.4f of %.4f; all %.4f +- %.4f, "
                   "%.4f +- %.4f\n",
                   plain.share, aimed.share, plain.direct, plain.direct_error, aimed.direct, aimed.direct_error,
@@ -203,9 +222,7 @@ static void a_small_window_is_found_and_its_light_is_right(void **state)
     assert_close(aimed.direct, THROUGH_WINDOW, 3.0 * aimed.direct_error);
     assert_close(aimed.all, plain.all, 3.0 * hypot(aimed.all_error, plain.all_error));
     assert_true(aimed.share > 10.0 * plain.share);
-    importance_map_reset(&asked);
-    scene_destroy(s);
-    test_run_reset(&r);
+    close_room(&room);
 }
 
 /* The room in a landscape thirty times as large, where light from afar that were spread evenly would meet the window
@@ -215,32 +232,26 @@ static void a_room_in_a_landscape_is_found(void **state)
     (void)state;
     if (IS_SANITIZED)
         skip(); /* statistics of what any_number_of_threads_has_the_same_photons runs */
-    test_run r;
-    test_run_init(&r, 2);
+    asked_room room;
     char shapes[4096];
     snprintf(shapes, sizeof shapes, "%sTranslate 20 30 -0.02 Shape \"disk\" \"float radius\" [60]\n", ROOM);
-    scene *s = scene_of(&r, shapes, SKY);
-    importance_map asked = ask_inside();
-    assert_true(s->detail_radius == 0.0f);
-    result aimed = trace_seeds(&r, s, (photon_order){.asked = &asked});
+    open_room(&room, shapes);
+    assert_true(room.s->detail_radius == 0.0f);
+    result aimed = trace_seeds(&room.run, room.s, (photon_order){.asked = &room.asked});
     print_message("inside: share %.4f, direct %.4f +- %.4f of %.4f, all %.4f +- %.4f\n", aimed.share, aimed.direct,
                   aimed.direct_error, THROUGH_WINDOW, aimed.all, aimed.all_error);
     assert_close(aimed.direct, THROUGH_WINDOW, 3.0 * aimed.direct_error);
     assert_true(aimed.direct_error < 0.015 * THROUGH_WINDOW);
-    importance_map_reset(&asked);
-    scene_destroy(s);
-    test_run_reset(&r);
+    close_room(&room);
 }
 
 static void no_photon_is_more_than_five_times_as_bright(void **state)
 {
     (void)state;
-    test_run r;
-    test_run_init(&r, 2);
-    scene *s = room_scene(&r, SKY);
-    importance_map asked = ask_inside();
-    photon_order by_power = {0}, by_aim = {.asked = &asked, .all_are_stored = true};
-    photon_set plain = trace(&r, s, by_power, 1), aimed = trace(&r, s, by_aim, 1);
+    asked_room room;
+    open_room(&room, ROOM);
+    photon_order by_power = {0}, by_aim = {.asked = &room.asked, .all_are_stored = true};
+    photon_set plain = trace(&room.run, room.s, by_power, 1), aimed = trace(&room.run, room.s, by_aim, 1);
     float most_plain = 0.0f, most_aimed = 0.0f;
     for (uint32_t i = 0; i < plain.count; i++)
         most_plain = fmaxf(most_plain, rgb_max(flux_decode(plain.photons[i].flux)));
@@ -249,9 +260,7 @@ static void no_photon_is_more_than_five_times_as_bright(void **state)
     assert_true(most_aimed <= 5.02f * most_plain);
     photon_set_reset(&plain);
     photon_set_reset(&aimed);
-    importance_map_reset(&asked);
-    scene_destroy(s);
-    test_run_reset(&r);
+    close_room(&room);
 }
 
 /* Aimed and split paths bring as much light inside as paths by power alone, within 3 sigma; with split paths fewer
@@ -261,23 +270,20 @@ static void paths_are_split_where_their_light_comes_in(void **state)
     (void)state;
     if (IS_SANITIZED)
         skip(); /* statistics of what any_number_of_threads_has_the_same_photons runs */
-    test_run r;
-    test_run_init(&r, 2);
-    scene *s = scene_of(&r, SIDE_ROOM, SKY);
-    importance_map asked = ask_inside(), onward = pass_to_inside();
-    photon_order by_power = {0}, by_aim = {.asked = &asked};
-    result plain = trace_seeds(&r, s, by_power), aimed = trace_seeds(&r, s, by_aim);
-    result split = trace_seeds(&r, s, (photon_order){.asked = &asked, .onward = &onward});
+    asked_room room;
+    open_room(&room, SIDE_ROOM);
+    importance_map onward = pass_to_inside();
+    photon_order by_power = {0}, by_aim = {.asked = &room.asked};
+    result plain = trace_seeds(&room.run, room.s, by_power), aimed = trace_seeds(&room.run, room.s, by_aim);
+    result split = trace_seeds(&room.run, room.s, (photon_order){.asked = &room.asked, .onward = &onward});
     print_message("inside: all %.4f +- %.4f plain, %.4f +- %.4f aimed, %.4f +- %.4f split; squares %.3g, %.3g, %.3g\n",
                   plain.all, plain.all_error, aimed.all, aimed.all_error, split.all, split.all_error, plain.squares,
                   aimed.squares, split.squares);
     assert_close(split.all, plain.all, 3.0 * hypot(split.all_error, plain.all_error));
     assert_close(split.all, aimed.all, 3.0 * hypot(split.all_error, aimed.all_error));
     assert_true(split.squares < 0.8 * aimed.squares);
-    importance_map_reset(&asked);
     importance_map_reset(&onward);
-    scene_destroy(s);
-    test_run_reset(&r);
+    close_room(&room);
 }
 
 /* SIDE_ROOM with brushed metal: a tray below the window, and a ledge on the ground outside. */
@@ -297,27 +303,23 @@ static void caustics_are_split_by_rough_metal(void **state)
     (void)state;
     if (IS_SANITIZED)
         skip(); /* statistics of what any_number_of_threads_has_the_same_photons runs */
-    test_run r;
-    test_run_init(&r, 2);
+    asked_room room;
     char shapes[4096];
     add_metal(shapes, sizeof shapes);
-    scene *s = scene_of(&r, shapes, SKY);
-    importance_map asked = ask_inside();
+    open_room(&room, shapes);
     photon_order order = {.kind = PHOTON_CAUSTIC};
-    result plain = trace_seeds(&r, s, order);
-    order.asked = &asked;
-    result split = trace_seeds(&r, s, order);
+    result plain = trace_seeds(&room.run, room.s, order);
+    order.asked = &room.asked;
+    result split = trace_seeds(&room.run, room.s, order);
     order.stay_whole = true;
-    result aimed = trace_seeds(&r, s, order);
+    result aimed = trace_seeds(&room.run, room.s, order);
     print_message("inside: all %.5f +- %.5f plain, %.5f +- %.5f aimed, %.5f +- %.5f split; squares %.3g, %.3g, %.3g\n",
                   plain.all, plain.all_error, aimed.all, aimed.all_error, split.all, split.all_error, plain.squares,
                   aimed.squares, split.squares);
     assert_close(split.all, plain.all, 3.0 * hypot(split.all_error, plain.all_error));
     assert_close(split.all, aimed.all, 3.0 * hypot(split.all_error, aimed.all_error));
     assert_true(split.squares < 0.8 * aimed.squares);
-    importance_map_reset(&asked);
-    scene_destroy(s);
-    test_run_reset(&r);
+    close_room(&room);
 }
 
 static void expect_same_for_any_threads(const char *shapes, photon_order order)

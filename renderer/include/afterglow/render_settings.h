@@ -104,8 +104,8 @@ typedef struct ag_render_settings {
                              Default AG_PHOTON_SEED_AUTOMATIC: seed */
     float photon_aim;     /* share of the photon paths, [0, 0.8], whose emission follows what a pilot pass has learned
                              about which paths reach the points where this picture looks up light; the others are
-                             emitted by power alone, so that no photon is more than five times as bright as without
-                             aim. It lowers the noise of this picture and raises that of other views; the light is
+                             emitted by power alone, so that no photon is more than five times as bright as by
+                             that. It lowers the noise of this picture and raises that of other views; the light is
                              the same. The pilot depends on view and shape of the whole frame alone. Default
                              AG_PHOTON_AIM_AUTOMATIC: AG_DEFAULT_PHOTON_AIM, but 0 with a photon_map_file, which
                              serves all views alike; an aimed file is refused for another view */
