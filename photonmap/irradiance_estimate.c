@@ -27,18 +27,25 @@ static bool is_lopsided(const photon_disc_sums *sums, vec3 normal, uint32_t coun
     return square > (double)LOPSIDED * (double)LOPSIDED * count * count;
 }
 
-/* Returns whether a photon that lies so high or low that it may be on a floor above or below is on the point's own. */
-static bool is_on_own_surface(const photon_map *map, const photon_disc *disc, uint32_t index, uint64_t *in_out_rays)
+/* Returns whether a photon that lies so high or low that it may be on a floor above or below is on the point's own.
+ * in_out_below_steps grows by one where it is seen, but lies below a step, as behind the edge of a board. */
+static bool is_on_own_surface(const photon_map *map, const photon_disc *disc, uint32_t index,
+                              uint32_t *in_out_below_steps, uint64_t *in_out_rays)
 {
-    vec3 at = photon_block_position(map->blocks, index);
-    float height = vec3_dot(vec3_sub(at, disc->position), disc->normal);
+    vec3 at = photon_block_position(map->blocks, index), offset = vec3_sub(at, disc->position);
+    float height = vec3_dot(offset, disc->normal), lateral_squared = vec3_dot(offset, offset) - height * height;
     if (height > 0.0f)
         return !photon_map_is_behind_wall(map, map->blocks, disc->position, disc->normal, index, in_out_rays);
     /* the space above a low photon must be empty */
     scene_ray up =
         scene_ray_make(vec3_add_scaled(at, disc->normal, 0.5f * disc->flat_height), vec3_scale(disc->normal, -height));
     ++*in_out_rays;
-    return !scene_is_blocked(map->surfaces, up, 1.0f);
+    if (scene_is_blocked(map->surfaces, up, 1.0f))
+        return false;
+    float cosine = vec3_dot(direction_decode(photon_block_normal(map->blocks, index)), disc->normal);
+    bool is_below = surface_region_is_below_step(disc->radius, lateral_squared, -height, cosine);
+    *in_out_below_steps += is_below;
+    return !is_below;
 }
 
 static uint32_t count_within(const photon_found *found, float most)
@@ -115,16 +122,18 @@ static uint32_t rings_of_one_light(const photon_found *found, float radius_squar
     return RINGS;
 }
 
-/* Makes the disc smaller until its rim is as bright as its middle, or has no photons. Inner rings must lack photons as
- * well as flux: by flux alone one bright photon far from the point, which is a matter of chance, would take itself out
- * of the disc. */
-static void leave_brighter_rim(photon_found *found, float *in_out_radius_squared)
+/* Makes the disc smaller until its rim is as bright as its middle, or has no photons. Returns whether it has become so.
+ * Inner rings must lack photons as well as flux: by flux alone one bright photon far from the point, which is a matter
+ * of chance, would take itself out of the disc. */
+static bool leave_brighter_rim(photon_found *found, float *in_out_radius_squared)
 {
-    for (uint32_t rings; (rings = rings_of_one_light(found, *in_out_radius_squared)) < RINGS;) {
+    bool is_left = false;
+    for (uint32_t rings; (rings = rings_of_one_light(found, *in_out_radius_squared)) < RINGS; is_left = true) {
         *in_out_radius_squared *= (float)rings / (float)RINGS;
         found->limit = next_below(*in_out_radius_squared);
         found->count = count_within(found, found->limit);
     }
+    return is_left;
 }
 
 /* A region holds an estimate if it is at least this share of the disc, and if photons of the disc's density, or of the
@@ -162,25 +171,25 @@ static float find_disc(const photon_map *map, photon_found *found, bool *out_has
         radius_squared = found->limit;
         photon_found_forget(found, found->farthest);
     }
-    radius_squared = fmaxf(radius_squared, map->min_radius_squared);
-    leave_brighter_rim(found, &radius_squared);
     return fmaxf(radius_squared, map->min_radius_squared);
 }
 
 /* Sums the photons that lie on the point's own surface, and forgets those that lie above or below it. scratch: room for
- * all of them. */
-static void sum_own_surface(const photon_map *map, const photon_disc *disc, photon_found *found,
-                            photon_neighbor *scratch, uint64_t *in_out_rays, photon_disc_sums *out_sums)
+ * all of them. Returns the number of those that lie below a step. */
+static uint32_t sum_own_surface(const photon_map *map, const photon_disc *disc, photon_found *found,
+                                photon_neighbor *scratch, uint64_t *in_out_rays, photon_disc_sums *out_sums)
 {
+    uint32_t below_steps = 0;
     const uint32_t count = found->count;
     const uint32_t on_surface = disc_kernels_best()->sum_on_surface(disc, found, out_sums, scratch);
     for (uint32_t i = 0; i < count - on_surface; i++) {
         uint32_t entry = photon_neighbor_index(scratch[i]), index = photon_found_index(found, entry);
-        if (is_on_own_surface(map, disc, index, in_out_rays))
+        if (is_on_own_surface(map, disc, index, &below_steps, in_out_rays))
             photon_disc_add(disc, index, out_sums);
         else
             photon_found_forget_entry(found, entry);
     }
+    return below_steps;
 }
 
 /* Returns whether the surface may end within the disc, by what is cheap to tell. */
@@ -196,13 +205,14 @@ static bool may_end(const photon_map *map, const clear_space *space, const photo
 /* Where the surface ends within the disc, takes the photons of its part alone into the sums, and that part for the
  * area, if an estimate holds there or there is a least area. extent: of the whole disc; returns that of the part. */
 static irradiance_extent fit_to_surface(const photon_map *map, const clear_space *space, const photon_disc *disc,
-                                        photon_found *found, bool has_next, irradiance_extent extent, double least_area,
-                                        uint64_t *in_out_rays, photon_disc_sums *in_out_sums, double *in_out_area)
+                                        photon_found *found, bool has_next, bool has_steps, irradiance_extent extent,
+                                        double least_area, uint64_t *in_out_rays, photon_disc_sums *in_out_sums,
+                                        double *in_out_area)
 {
-    surface_region region;
+    surface_region region = {.has_steps = has_steps};
     if (!surface_region_find(map->surfaces, space, disc->position, disc->normal, PHOTON_ESTIMATE_MIN_COS, disc->radius,
                              in_out_rays, &region))
-        return extent;
+        return has_steps ? IRRADIANCE_HOLDS_NOWHERE : extent;
     double area = surface_region_area(&region, disc->radius);
     photon_disc_sums inside;
     bool is_k = disc_kernels_best()->sum_in_region(disc, &region, found, &inside) == map->nearest && has_next;
@@ -231,6 +241,21 @@ static const clear_space *find_space(const photon_map *map, vec3 position, const
     return clear_spaces_get(map->spaces, is_known ? hint->leaf : photon_tree_leaf(&map->tree, position), spare);
 }
 
+static photon_disc make_disc(const photon_map *map, const clear_space *space, vec3 position, vec3 normal,
+                             float radius_squared)
+{
+    float radius = sqrtf(radius_squared);
+    bool is_whole =
+        space && surface_region_is_whole(map->surfaces, space, position, normal, PHOTON_ESTIMATE_MIN_COS, radius);
+    return (photon_disc){.blocks = map->blocks,
+                         .position = position,
+                         .normal = normal,
+                         .radius = radius,
+                         .flat_height = map->surfaces ? radius * FLAT_HEIGHT_SHARE : INFINITY,
+                         .flux_exponent_max = map->flux_exponent_max,
+                         .has_offsets = map->surfaces && !is_whole};
+}
+
 /* irradiance_estimate_find_reach. least_area: of the surface that the photons of a disc are taken to lie on, where it
  * is too small to hold an estimate; 0: the whole disc then answers. */
 static irradiance_extent find(const photon_map *map, vec3 position, vec3 normal, double least_area,
@@ -253,32 +278,30 @@ static irradiance_extent find(const photon_map *map, vec3 position, vec3 normal,
     if (out_reach_squared)
         *out_reach_squared = reach_of(map, &found);
 
-    /* their disc, as far as it has the light of its middle */
+    /* their disc, and of its photons those on the point's surface, and none above or below it */
     bool has_next;
-    float radius_squared = find_disc(map, &found, &has_next), radius = sqrtf(radius_squared);
-    bool is_whole =
-        space && surface_region_is_whole(map->surfaces, space, position, normal, PHOTON_ESTIMATE_MIN_COS, radius);
-    photon_disc disc = {.blocks = map->blocks,
-                        .position = position,
-                        .normal = normal,
-                        .radius = radius,
-                        .flat_height = map->surfaces ? radius * FLAT_HEIGHT_SHARE : INFINITY,
-                        .flux_exponent_max = map->flux_exponent_max,
-                        .has_offsets = map->surfaces && !is_whole};
-
-    /* of its photons those on the point's surface, and none above or below it */
+    float radius_squared = find_disc(map, &found, &has_next);
+    photon_disc disc = make_disc(map, space, position, normal, radius_squared);
     photon_disc_sums sums;
     const uint32_t count = found.count;
-    sum_own_surface(map, &disc, &found, scratch, in_out_rays, &sums);
+    uint32_t below_steps = sum_own_surface(map, &disc, &found, scratch, in_out_rays, &sums);
     bool has_other_surfaces = found.count < count;
+    bool are_mostly_others = has_next && (float)found.count < OWN_SHARE_MIN * (float)(count - below_steps);
+
+    /* as far as it has the light of its middle */
+    if (leave_brighter_rim(&found, &radius_squared)) {
+        radius_squared = fmaxf(radius_squared, map->min_radius_squared);
+        disc = make_disc(map, space, position, normal, radius_squared);
+        below_steps += sum_own_surface(map, &disc, &found, scratch, in_out_rays, &sums);
+    }
 
     /* of its area what is surface */
     double area = (double)AG_PI * (double)radius_squared;
     irradiance_extent extent = has_other_surfaces ? IRRADIANCE_HOLDS_IN_SIGHT : IRRADIANCE_HOLDS_EVERYWHERE;
-    bool are_mostly_others = has_next && (float)found.count < OWN_SHARE_MIN * (float)count;
     if ((least_area > 0.0 || !are_mostly_others) && disc.has_offsets &&
         (has_other_surfaces || may_end(map, space, &disc, &found, radius_squared, &sums, in_out_rays)))
-        extent = fit_to_surface(map, space, &disc, &found, has_next, extent, least_area, in_out_rays, &sums, &area);
+        extent = fit_to_surface(map, space, &disc, &found, has_next, below_steps > 0, extent, least_area, in_out_rays,
+                                &sums, &area);
     if (are_mostly_others)
         extent = IRRADIANCE_HOLDS_NOWHERE;
 

@@ -104,6 +104,12 @@ static vec3 start_of_probe(const probe *p, vec3 tangent, float lateral)
     return vec3_add_scaled(p->above, tangent, lateral);
 }
 
+bool surface_region_is_below_step(float radius, float lateral_squared, float drop, float cosine)
+{
+    float excess = drop - LIFT * radius;
+    return excess > 0.0f && excess * excess * cosine * cosine > lateral_squared * (1.0f - cosine * cosine);
+}
+
 /* Whether a ray meets the surface so far along a unit tangent: as deep as photons within the radius may lie. */
 static bool meet_below(const probe *p, vec3 tangent, float lateral, float farthest, below *out)
 {
@@ -116,7 +122,18 @@ static bool meet_below(const probe *p, vec3 tangent, float lateral, float farthe
                    .has_holes = has_holes(p->s, &hit),
                    .drop = hit.distance - p->lift,
                    .normal = vec3_face_forward(hit.geometric_normal, p->normal)};
-    return true;
+    return !surface_region_is_below_step(p->radius, lateral * lateral, out->drop, vec3_dot(out->normal, p->normal));
+}
+
+/* Returns whether the surface that a clear space is of lies no lower than a step: it may have been found at another
+ * point, and be the wall behind the point's board. */
+static bool is_of_same_level(const probe *p)
+{
+    if (p->space->plane_count == 0)
+        return false;
+    const clear_space_plane *plane = &p->space->plane[0];
+    float cosine = vec3_dot(plane->normal, p->normal), above = vec3_dot(plane->normal, p->above) - plane->height;
+    return cosine > 0.0f && above < (p->lift + 0.5f * LIFT * p->radius) * cosine;
 }
 
 /* Returns what meet_below does, without a ray where the clear space tells the answer. */
@@ -124,8 +141,9 @@ static bool find_below(const probe *p, vec3 tangent, float lateral, below *out)
 {
     float farthest = p->lift + sqrtf(fmaxf(0.0f, p->radius * p->radius - lateral * lateral));
     *out = (below){0};
-    return (p->space && clear_space_ends_ray(p->s, p->space, start_of_probe(p, tangent, lateral),
-                                             vec3_negate(p->normal), farthest, p->min_cos)) ||
+    return (p->space && is_of_same_level(p) &&
+            clear_space_ends_ray(p->s, p->space, start_of_probe(p, tangent, lateral), vec3_negate(p->normal), farthest,
+                                 p->min_cos)) ||
            meet_below(p, tangent, lateral, farthest, out);
 }
 
@@ -253,9 +271,11 @@ static float share_that_is_there(const probe *p, const surface_region *r)
         if (!surface_region_contains(r, vec3_add_scaled(r->center, tangent, length * p->radius)))
             continue;
         below found;
-        bool is_there = find_below(&what_is_there, tangent, length * p->radius, &found);
-        there += is_there;
-        all += is_there || find_below(p, tangent, length * p->radius, &found);
+        surface_hit rise;
+        all++;
+        bool has_risen = find_surface(&what_is_there, p->above, tangent, length * p->radius, &rise) &&
+                         is_alike(&rise, p->normal, tangent, p->min_cos);
+        there += has_risen || find_below(&what_is_there, tangent, length * p->radius, &found);
     }
     /* the centre counts too: (n + 1) / (N + 1) makes 1 / share of a binomial count nearly unbiased */
     return ((float)there + 1.0f) / ((float)all + 1.0f);
@@ -301,24 +321,24 @@ static bool fill_region(probe *p, bool may_be_empty, surface_region *r)
         r->nearest_end = fminf(r->nearest_end, extent[i]);
         extent[i] = fmaxf(extent[i], SHORTEST * p->radius);
     }
-    if (r->nearest_end >= p->radius && !may_be_empty)
+    if (r->nearest_end >= p->radius && !may_be_empty && !r->has_steps)
         return false;
     for (int i = 0; i < SURFACE_REGION_OCTANTS; i++)
         bound_octant(extent, p->radius, i, r->line[i]);
-    r->share = may_be_empty ? share_that_is_there(p, r) : 1.0f;
-    return r->nearest_end < p->radius || r->share < 1.0f;
+    r->share = may_be_empty || r->has_steps ? share_that_is_there(p, r) : 1.0f;
+    return r->nearest_end < p->radius || r->share < 1.0f || r->has_steps;
 }
 
 bool surface_region_find(const scene *s, const clear_space *space, vec3 position, vec3 normal, float min_cos,
-                         float radius, uint64_t *in_out_rays, surface_region *out_region)
+                         float radius, uint64_t *in_out_rays, surface_region *in_out_region)
 {
     probe p = probe_make(s, space, min_cos, radius, in_out_rays);
     surface_hit foot;
     if (!find_foot(&p, position, normal, &foot))
         return false;
-    out_region->center = position;
-    find_tangents(position, p.normal, &out_region->x, &out_region->y);
-    return fill_region(&p, has_holes(s, &foot), out_region);
+    in_out_region->center = position;
+    find_tangents(position, p.normal, &in_out_region->x, &in_out_region->y);
+    return fill_region(&p, has_holes(s, &foot), in_out_region);
 }
 
 /* Turns the frame so that x runs along the nearest of the region's bounds. */

@@ -19,7 +19,9 @@ typedef struct surface_region {
     float line[SURFACE_REGION_OCTANTS][2];
     float bend[SURFACE_REGION_OCTANTS][2]; /* along each octant's first bound, and in the frame x, y: by how much the
                                               normal's part in the plane grows over a scene unit; 0 where flat */
-    float share; /* share of the area within those bounds that is surface: below 1 where alpha cuts holes (alpha.h) */
+    bool has_steps; /* other surfaces lie below, as a wall behind a board; set by who looks for a region */
+    float share;    /* share of the area within those bounds that is surface: below 1 where alpha cuts holes (alpha.h),
+                       and where steps lead down to other surfaces */
     float nearest_end; /* distance from the centre to the nearest end of the surface, along the octants' bounds, scene
                           units */
 } surface_region;
@@ -32,12 +34,17 @@ static const float SURFACE_REGION_BOUND[SURFACE_REGION_OCTANTS][2] = {
 /* The octant of a point of the plane, by the bits |y| > |x|, x < 0, y < 0, from the lowest. */
 static const uint32_t SURFACE_REGION_OCTANT_BY_SIGNS[SURFACE_REGION_OCTANTS] = {0, 1, 3, 2, 7, 6, 4, 5};
 
-/* Finds the region around a point. min_cos: normals with a greater cosine belong to the surface, as for photons. The
- * rays cast are added to *in_out_rays, here and below. space: a clear space nearby, or NULL; rays whose answer it tells
- * are not cast. Returns false where the surface has neither an end nor a hole within radius, and where there is no
- * surface at the point. */
+/* Returns whether what lies so far below the plane of a point, at a lateral distance, is another surface: it faces the
+ * way that the point's own does too nearly to have bent down to there. A step of less than a thirty-second of the
+ * radius is none. cosine: > 0, between the two normals. All lengths in scene units. */
+bool surface_region_is_below_step(float radius, float lateral_squared, float drop, float cosine);
+
+/* Finds the region around a point; its has_steps is set beforehand, and costs some 100 rays. min_cos: normals with a
+ * greater cosine belong to the surface, as for photons. The rays cast are added to *in_out_rays, here and below. space:
+ * a clear space nearby, or NULL; rays whose answer it tells are not cast. Returns false where the surface has neither
+ * an end nor a hole nor a step within radius, and where there is no surface at the point. */
 bool surface_region_find(const scene *s, const clear_space *space, vec3 position, vec3 normal, float min_cos,
-                         float radius, uint64_t *in_out_rays, surface_region *out_region);
+                         float radius, uint64_t *in_out_rays, surface_region *in_out_region);
 
 /* Finds a larger part of what a region is of, where that is a strip, as a rod, a bar or a cord: the region's eight
  * directions miss the strip's, so that little of its length is within. Changes the region only if its area grows.

@@ -11,6 +11,10 @@
     "Shape \"trianglemesh\" \"integer indices\" [0 2 1 1 2 3  4 5 6 5 7 6  0 1 4 1 5 4  2 6 3 3 6 7  0 4 2 2 4 6  1 3 5 3 7 " \
     "5] \"point3 P\" [" X0 " " Y0 " " Z0 " " X1 " " Y0 " " Z0 " " X0 " " Y1 " " Z0 " " X1 " " Y1 " " Z0 " " X0 " " Y0         \
     " " Z1 " " X1 " " Y0 " " Z1 " " X0 " " Y1 " " Z1 " " X1 " " Y1 " " Z1 "]\n"
+#define SLAT(Z0, Z1)                                                                                                   \
+    QUAD("-1 .02 " Z0 "  1 .02 " Z0 "  -1 .02 " Z1 "  1 .02 " Z1)                                                      \
+    QUAD("-1 0 " Z0 "  1 0 " Z0 "  -1 .02 " Z0 "  1 .02 " Z0)                                                          \
+        QUAD("-1 0 " Z1 "  1 0 " Z1 "  -1 .02 " Z1 "  1 .02 " Z1)
 #define QUAD(P) "Shape \"bilinearmesh\" \"point3 P\" [" P "]\n"
 
 /* 16 curves that grow out of the plane y = 0 and lean, and one that lies across it, 1 mm above. */
@@ -55,6 +59,44 @@ static const served_case CASES[] = {
      1.5f,
      2,
      {{0.25f, 0.25f}, {1, 1}}},
+    {"boards with ten times the light of the wall, 50 mm behind them",
+     QUAD("-1 0 -1  1 0 -1  -1 0 1  1 0 1") QUAD("-1 0.05 -0.90  1 0.05 -0.90  -1 0.05 -0.75  1 0.05 -0.75")
+         QUAD("-1 0.05 -0.50  1 0.05 -0.50  -1 0.05 -0.35  1 0.05 -0.35")
+             QUAD("-1 0.05 -0.10  1 0.05 -0.10  -1 0.05 0.05  1 0.05 0.05")
+                 QUAD("-1 0.05 0.30  1 0.05 0.30  -1 0.05 0.45  1 0.05 0.45")
+                     QUAD("-1 0.05 0.70  1 0.05 0.70  -1 0.05 0.85  1 0.05 0.85"),
+     0.3f,
+     {0, 0, 0},
+     1.5f,
+     2,
+     {{0.1f, 0.1f}, {1, 1}}},
+    {"boards with four times the light of the wall, 20 mm thick",
+     QUAD("-1 0 -1  1 0 -1  -1 0 1  1 0 1") SLAT("-1", "-0.8") SLAT("-0.5", "-0.3") SLAT("0", "0.2") SLAT("0.5", "0.7"),
+     0.3f,
+     {0, 0, 0},
+     1.5f,
+     2,
+     {{0.25f, 0.25f}, {1, 1}}},
+    {"posts on a board with ten times the light of the wall behind it",
+     "Shape \"trianglemesh\" \"integer indices\" [0 1 2 1 3 2] \"point3 P\" [-1 0 -1  1 0 -1  -1 0 1  1 0 1]\n" QUAD(
+         "-1 0.05 -0.5  1 0.05 -0.5  -1 0.05 0.5  1 0.05 0.5") "Translate -0.75 0 -0.25\n" BOX("-.01", ".01", "0.05",
+                                                                                               "0.15", "-.01",
+                                                                                               ".01") "Translate .5 0 0\n" BOX("-.01",
+                                                                                                                               ".01", "0.05", "0.15", "-.01", ".01") "Translate .5 0 0\n" BOX("-.01", ".01", "0.05", "0.15", "-.01", ".01") "Translate .5 0 0\n" BOX("-.01", ".01", "0.05", "0.15", "-.01", ".01") "Translate 0 0 .5\n" BOX("-.01",
+                                                                                                                                                                                                                                                                                                                                            ".01", "0.05", "0.15", "-.01", ".01") "Translate -.5 0 0\n" BOX("-.01", ".01", "0.05", "0.15", "-.01", ".01") "Translate -.5 0 0\n" BOX("-.01",
+                                                                                                                                                                                                                                                                                                                                                                                                                                                                                    ".01",
+                                                                                                                                                                                                                                                                                                                                                                                                                                                                                    "0.05",
+                                                                                                                                                                                                                                                                                                                                                                                                                                                                                    "0.15",
+                                                                                                                                                                                                                                                                                                                                                                                                                                                                                    "-.01",
+                                                                                                                                                                                                                                                                                                                                                                                                                                                                                    ".01") "Translate -.5 0 0\n" BOX("-.01",
+                                                                                                                                                                                                                                                                                                                                                                                                                                                                                                                     ".01", "0.05", "0.15",
+                                                                                                                                                                                                                                                                                                                                                                                                                                                                                                                     "-.01",
+                                                                                                                                                                                                                                                                                                                                                                                                                                                                                                                     ".01") "Translate 0 0 0\n",
+     0.3f,
+     {0, 0, 0},
+     1.5f,
+     2,
+     {{0.1f, 0.1f}, {1, 1}}},
     {"disks smaller than the radius",
      "Shape \"disk\" \"float radius\" 0.05\nTranslate 0 0 0.3 Shape \"disk\" \"float radius\" 0.1\n"
      "Translate 0 0 0.3 Shape \"disk\" \"float radius\" 0.02\nTranslate 0 0 0.3 Shape \"disk\" \"float radius\" 0.2\n"

@@ -45,7 +45,7 @@ static void areas_are_those_of_cut_discs(void **state)
         enum { TRIALS = 200 };
         for (int k = 0; k < TRIALS; k++) {
             vec3 jitter = {(rng_float(&random) - 0.5f) * 2e-3f, 0.0f, (rng_float(&random) - 0.5f) * 2e-3f};
-            surface_region region;
+            surface_region region = {0};
             bool is_bounded =
                 surface_region_find(s, NULL, vec3_add(points[i].at, jitter), UP, 0.5f, radius, &rays, &region);
             assert_int_equal(is_bounded, points[i].expected > 0.0);
@@ -85,7 +85,7 @@ static void area_and_membership_agree(void **state)
     int bounded = 0, all_astray = 0, all_inside = 0;
     for (int i = 0; i < DISCS; i++) {
         vec3 at = {2.0f * rng_float(&random) - 1.0f, 0.0f, 2.0f * rng_float(&random) - 1.0f};
-        surface_region region;
+        surface_region region = {0};
         if (!surface_region_find(s, NULL, at, UP, 0.5f, radius, &rays, &region))
             continue;
         bounded++;
@@ -123,12 +123,12 @@ static void a_ball_has_no_edge(void **state)
     rng random = test_random(5);
     for (int i = 0; i < 200; i++) {
         vec3 n = sample_uniform_sphere(rng_vec2(&random));
-        surface_region region;
+        surface_region region = {0};
         assert_false(
             surface_region_find(s, NULL, vec3_add((vec3){5.0f, 0.0f, 0.0f}, n), n, 0.5f, 0.4f, &rays, &region));
     }
     /* where there is no surface there is no region */
-    surface_region region;
+    surface_region region = {0};
     assert_false(surface_region_find(s, NULL, (vec3){0.0f, 0.5f, 0.0f}, UP, 0.5f, 0.4f, &rays, &region));
     scene_destroy(s);
     test_run_reset(&r);
