@@ -28,11 +28,12 @@ static bool is_lopsided(const photon_disc_sums *sums, vec3 normal, uint32_t coun
 }
 
 /* Returns whether a photon that lies so high or low that it may be on a floor above or below is on the point's own.
- * in_out_below_steps grows by one where it is seen, but lies below a step, as behind the edge of a board. */
-static bool is_on_own_surface(const photon_map *map, const photon_disc *disc, uint32_t index,
-                              uint32_t *in_out_below_steps, uint64_t *in_out_rays)
+ * *out_is_below: it is seen, but lies below a step, as behind the edge of a board. */
+static bool is_on_own_surface(const photon_map *map, const photon_disc *disc, uint32_t index, bool *out_is_below,
+                              uint64_t *in_out_rays)
 {
     vec3 at = photon_block_position(map->blocks, index), offset = vec3_sub(at, disc->position);
+    *out_is_below = false;
     float height = vec3_dot(offset, disc->normal), lateral_squared = vec3_dot(offset, offset) - height * height;
     if (height > 0.0f)
         return !photon_map_is_behind_wall(map, map->blocks, disc->position, disc->normal, index, in_out_rays);
@@ -43,9 +44,8 @@ static bool is_on_own_surface(const photon_map *map, const photon_disc *disc, ui
     if (scene_is_blocked(map->surfaces, up, 1.0f))
         return false;
     float cosine = vec3_dot(direction_decode(photon_block_normal(map->blocks, index)), disc->normal);
-    bool is_below = surface_region_is_below_step(disc->radius, lateral_squared, -height, cosine);
-    *in_out_below_steps += is_below;
-    return !is_below;
+    *out_is_below = surface_region_is_below_step(disc->radius, lateral_squared, -height, cosine);
+    return !*out_is_below;
 }
 
 static uint32_t count_within(const photon_found *found, float most)
@@ -174,22 +174,46 @@ static float find_disc(const photon_map *map, photon_found *found, bool *out_has
     return fmaxf(radius_squared, map->min_radius_squared);
 }
 
-/* Sums the photons that lie on the point's own surface, and forgets those that lie above or below it. scratch: room for
- * all of them. Returns the number of those that lie below a step. */
-static uint32_t sum_own_surface(const photon_map *map, const photon_disc *disc, photon_found *found,
-                                photon_neighbor *scratch, uint64_t *in_out_rays, photon_disc_sums *out_sums)
+/* The photons that are seen below a step. */
+typedef struct step_photons {
+    photon_neighbor *entries; /* of the photons found; borrowed: the estimate's scratch */
+    uint32_t count;
+    bool are_more; /* others were seen in a larger disc */
+} step_photons;
+
+/* Sums the photons that lie on the point's own surface, and forgets those that lie above or below it. in_out_steps:
+ * its entries have room for all photons. */
+static void sum_own_surface(const photon_map *map, const photon_disc *disc, photon_found *found,
+                            step_photons *in_out_steps, uint64_t *in_out_rays, photon_disc_sums *out_sums)
 {
-    uint32_t below_steps = 0;
+    photon_neighbor *scratch = in_out_steps->entries;
+    in_out_steps->are_more = in_out_steps->count > 0;
+    in_out_steps->count = 0;
     const uint32_t count = found->count;
     const uint32_t on_surface = disc_kernels_best()->sum_on_surface(disc, found, out_sums, scratch);
     for (uint32_t i = 0; i < count - on_surface; i++) {
         uint32_t entry = photon_neighbor_index(scratch[i]), index = photon_found_index(found, entry);
-        if (is_on_own_surface(map, disc, index, &below_steps, in_out_rays))
+        bool is_below;
+        if (is_on_own_surface(map, disc, index, &is_below, in_out_rays)) {
             photon_disc_add(disc, index, out_sums);
-        else
-            photon_found_forget_entry(found, entry);
+            continue;
+        }
+        photon_found_forget_entry(found, entry);
+        if (is_below)
+            scratch[in_out_steps->count++] = scratch[i];
     }
-    return below_steps;
+}
+
+/* Returns whether other surfaces below a step lie below the region, by their photons. */
+static bool lies_above_steps(const photon_map *map, const photon_found *found, const step_photons *steps,
+                             const surface_region *region)
+{
+    bool does = steps->are_more;
+    for (uint32_t i = 0; i < steps->count && !does; i++) {
+        uint32_t index = photon_found_index(found, photon_neighbor_index(steps->entries[i]));
+        does = surface_region_contains(region, photon_block_position(map->blocks, index));
+    }
+    return does;
 }
 
 /* Returns whether the surface may end within the disc, by what is cheap to tell. */
@@ -205,14 +229,17 @@ static bool may_end(const photon_map *map, const clear_space *space, const photo
 /* Where the surface ends within the disc, takes the photons of its part alone into the sums, and that part for the
  * area, if an estimate holds there or there is a least area. extent: of the whole disc; returns that of the part. */
 static irradiance_extent fit_to_surface(const photon_map *map, const clear_space *space, const photon_disc *disc,
-                                        photon_found *found, bool has_next, bool has_steps, irradiance_extent extent,
-                                        double least_area, uint64_t *in_out_rays, photon_disc_sums *in_out_sums,
-                                        double *in_out_area)
+                                        photon_found *found, bool has_next, const step_photons *steps,
+                                        irradiance_extent extent, double least_area, uint64_t *in_out_rays,
+                                        photon_disc_sums *in_out_sums, double *in_out_area)
 {
-    surface_region region = {.has_steps = has_steps};
+    surface_region region = {.has_steps = steps->count > 0 || steps->are_more};
     if (!surface_region_find(map->surfaces, space, disc->position, disc->normal, PHOTON_ESTIMATE_MIN_COS, disc->radius,
                              in_out_rays, &region))
-        return has_steps ? IRRADIANCE_HOLDS_NOWHERE : extent;
+        return region.has_steps ? IRRADIANCE_HOLDS_NOWHERE : extent;
+    if (lies_above_steps(map, found, steps, &region))
+        surface_region_leave_steps(map->surfaces, space, disc->normal, PHOTON_ESTIMATE_MIN_COS, disc->radius,
+                                   in_out_rays, &region);
     double area = surface_region_area(&region, disc->radius);
     photon_disc_sums inside;
     bool is_k = disc_kernels_best()->sum_in_region(disc, &region, found, &inside) == map->nearest && has_next;
@@ -284,15 +311,16 @@ static irradiance_extent find(const photon_map *map, vec3 position, vec3 normal,
     photon_disc disc = make_disc(map, space, position, normal, radius_squared);
     photon_disc_sums sums;
     const uint32_t count = found.count;
-    uint32_t below_steps = sum_own_surface(map, &disc, &found, scratch, in_out_rays, &sums);
+    step_photons steps = {.entries = scratch};
+    sum_own_surface(map, &disc, &found, &steps, in_out_rays, &sums);
     bool has_other_surfaces = found.count < count;
-    bool are_mostly_others = has_next && (float)found.count < OWN_SHARE_MIN * (float)(count - below_steps);
+    bool are_mostly_others = has_next && (float)found.count < OWN_SHARE_MIN * (float)(count - steps.count);
 
     /* as far as it has the light of its middle */
     if (leave_brighter_rim(&found, &radius_squared)) {
         radius_squared = fmaxf(radius_squared, map->min_radius_squared);
         disc = make_disc(map, space, position, normal, radius_squared);
-        below_steps += sum_own_surface(map, &disc, &found, scratch, in_out_rays, &sums);
+        sum_own_surface(map, &disc, &found, &steps, in_out_rays, &sums);
     }
 
     /* of its area what is surface */
@@ -300,8 +328,8 @@ static irradiance_extent find(const photon_map *map, vec3 position, vec3 normal,
     irradiance_extent extent = has_other_surfaces ? IRRADIANCE_HOLDS_IN_SIGHT : IRRADIANCE_HOLDS_EVERYWHERE;
     if ((least_area > 0.0 || !are_mostly_others) && disc.has_offsets &&
         (has_other_surfaces || may_end(map, space, &disc, &found, radius_squared, &sums, in_out_rays)))
-        extent = fit_to_surface(map, space, &disc, &found, has_next, below_steps > 0, extent, least_area, in_out_rays,
-                                &sums, &area);
+        extent =
+            fit_to_surface(map, space, &disc, &found, has_next, &steps, extent, least_area, in_out_rays, &sums, &area);
     if (are_mostly_others)
         extent = IRRADIANCE_HOLDS_NOWHERE;
 

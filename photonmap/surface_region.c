@@ -325,7 +325,7 @@ static bool fill_region(probe *p, bool may_be_empty, surface_region *r)
         return false;
     for (int i = 0; i < SURFACE_REGION_OCTANTS; i++)
         bound_octant(extent, p->radius, i, r->line[i]);
-    r->share = may_be_empty || r->has_steps ? share_that_is_there(p, r) : 1.0f;
+    r->share = may_be_empty ? share_that_is_there(p, r) : 1.0f;
     return r->nearest_end < p->radius || r->share < 1.0f || r->has_steps;
 }
 
@@ -339,6 +339,15 @@ bool surface_region_find(const scene *s, const clear_space *space, vec3 position
     in_out_region->center = position;
     find_tangents(position, p.normal, &in_out_region->x, &in_out_region->y);
     return fill_region(&p, has_holes(s, &foot), in_out_region);
+}
+
+void surface_region_leave_steps(const scene *s, const clear_space *space, vec3 normal, float min_cos, float radius,
+                                uint64_t *in_out_rays, surface_region *in_out_region)
+{
+    probe p = probe_make(s, space, min_cos, radius, in_out_rays);
+    surface_hit foot;
+    if (find_foot(&p, in_out_region->center, normal, &foot))
+        in_out_region->share = share_that_is_there(&p, in_out_region);
 }
 
 /* Turns the frame so that x runs along the nearest of the region's bounds. */

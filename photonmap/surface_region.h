@@ -19,9 +19,10 @@ typedef struct surface_region {
     float line[SURFACE_REGION_OCTANTS][2];
     float bend[SURFACE_REGION_OCTANTS][2]; /* along each octant's first bound, and in the frame x, y: by how much the
                                               normal's part in the plane grows over a scene unit; 0 where flat */
-    bool has_steps; /* other surfaces lie below, as a wall behind a board; set by who looks for a region */
+    bool has_steps; /* other surfaces lie below, as a wall behind a board: a region is wanted even where there is no
+                       end; set by who looks for it */
     float share;    /* share of the area within those bounds that is surface: below 1 where alpha cuts holes (alpha.h),
-                       and where steps lead down to other surfaces */
+                       and where surface_region_leave_steps has found other surfaces */
     float nearest_end; /* distance from the centre to the nearest end of the surface, along the octants' bounds, scene
                           units */
 } surface_region;
@@ -39,12 +40,17 @@ static const uint32_t SURFACE_REGION_OCTANT_BY_SIGNS[SURFACE_REGION_OCTANTS] = {
  * radius is none. cosine: > 0, between the two normals. All lengths in scene units. */
 bool surface_region_is_below_step(float radius, float lateral_squared, float drop, float cosine);
 
-/* Finds the region around a point; its has_steps is set beforehand, and costs some 100 rays. min_cos: normals with a
+/* Finds the region around a point; its has_steps is set beforehand. min_cos: normals with a
  * greater cosine belong to the surface, as for photons. The rays cast are added to *in_out_rays, here and below. space:
  * a clear space nearby, or NULL; rays whose answer it tells are not cast. Returns false where the surface has neither
  * an end nor a hole nor a step within radius, and where there is no surface at the point. */
 bool surface_region_find(const scene *s, const clear_space *space, vec3 position, vec3 normal, float min_cos,
                          float radius, uint64_t *in_out_rays, surface_region *in_out_region);
+
+/* Finds the share of a region above surfaces that lie below a step. normal, min_cos, radius: as for
+ * surface_region_find, which has found it. Costs some 100 rays. */
+void surface_region_leave_steps(const scene *s, const clear_space *space, vec3 normal, float min_cos, float radius,
+                                uint64_t *in_out_rays, surface_region *in_out_region);
 
 /* Finds a larger part of what a region is of, where that is a strip, as a rod, a bar or a cord: the region's eight
  * directions miss the strip's, so that little of its length is within. Changes the region only if its area grows.
