@@ -26,9 +26,9 @@ typedef enum irradiance_extent {
  * disc holds, as on a strip, a moulding or a leaf: photons per area are right there only on average, by values that are
  * nearly always 0 and otherwise a thousand times too large. *out_irradiance is then that of the whole disc, which
  * includes other surfaces but is bounded. It holds nowhere either if most of the photons found lie on surfaces above
- * or below that the point does not see, whose density has then set the radius. The decision depends on geometry, on the density of photons in the
- * whole scene and on the photons of other surfaces, never on the number of photons found on this surface: to accept
- * some outcomes of a random count and not others would bias the mean. */
+ * or below that the point does not see, whose density has then set the radius. The decision depends on geometry, on the
+ * density of photons in the whole scene and on the photons of other surfaces, never on the number of photons found on
+ * this surface: to accept some outcomes of a random count and not others would bias the mean. */
 irradiance_extent irradiance_estimate_find(const photon_map *map, vec3 position, vec3 normal, photon_neighbor *scratch,
                                            uint64_t *in_out_rays, rgb *out_irradiance);
 

@@ -14,7 +14,7 @@
 #define SLAT(Z0, Z1)                                                                                                   \
     QUAD("-1 .02 " Z0 "  1 .02 " Z0 "  -1 .02 " Z1 "  1 .02 " Z1)                                                      \
     QUAD("-1 0 " Z0 "  1 0 " Z0 "  -1 .02 " Z0 "  1 .02 " Z0)                                                          \
-        QUAD("-1 0 " Z1 "  1 0 " Z1 "  -1 .02 " Z1 "  1 .02 " Z1)
+    QUAD("-1 0 " Z1 "  1 0 " Z1 "  -1 .02 " Z1 "  1 .02 " Z1)
 #define QUAD(P) "Shape \"bilinearmesh\" \"point3 P\" [" P "]\n"
 
 /* 16 curves that grow out of the plane y = 0 and lean, and one that lies across it, 1 mm above. */
