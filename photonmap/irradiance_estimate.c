@@ -268,6 +268,7 @@ static const clear_space *find_space(const photon_map *map, vec3 position, const
     return clear_spaces_get(map->spaces, is_known ? hint->leaf : photon_tree_leaf(&map->tree, position), spare);
 }
 
+/* The disc around a point, in which offsets are summed unless it is known to be whole surface. */
 static photon_disc make_disc(const photon_map *map, const clear_space *space, vec3 position, vec3 normal,
                              float radius_squared)
 {

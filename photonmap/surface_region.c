@@ -259,7 +259,7 @@ static float share_that_is_there(const probe *p, const surface_region *r)
     rng random = rng_make(hash_combine(bits[0], bits[1]), 0, bits[2]);
     probe what_is_there = *p;
     what_is_there.alpha_rule = RAY_MEETS_ALPHA;
-    int all = 0, there = 0; /* with holes and without */
+    int all = 0, there = 0; /* points of the region; those where the surface is */
     for (int i = 0; i < PARTS * PARTS; i++) {
         vec2 u = rng_vec2(&random);
         vec2 d = sample_disk_concentric(

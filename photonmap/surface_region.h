@@ -40,10 +40,10 @@ static const uint32_t SURFACE_REGION_OCTANT_BY_SIGNS[SURFACE_REGION_OCTANTS] = {
  * radius is none. cosine: > 0, between the two normals. All lengths in scene units. */
 bool surface_region_is_below_step(float radius, float lateral_squared, float drop, float cosine);
 
-/* Finds the region around a point; its has_steps is set beforehand. min_cos: normals with a
- * greater cosine belong to the surface, as for photons. The rays cast are added to *in_out_rays, here and below. space:
- * a clear space nearby, or NULL; rays whose answer it tells are not cast. Returns false where the surface has neither
- * an end nor a hole nor a step within radius, and where there is no surface at the point. */
+/* Finds the region around a point; its has_steps is set beforehand. min_cos: normals with a greater cosine belong to
+ * the surface, as for photons. The rays cast are added to *in_out_rays, here and below. space: a clear space nearby, or
+ * NULL; rays whose answer it tells are not cast. Returns false where the surface has neither an end nor a hole nor a
+ * step within radius, and where there is no surface at the point. */
 bool surface_region_find(const scene *s, const clear_space *space, vec3 position, vec3 normal, float min_cos,
                          float radius, uint64_t *in_out_rays, surface_region *in_out_region);
 

@@ -11,11 +11,13 @@
     "Shape \"trianglemesh\" \"integer indices\" [0 2 1 1 2 3  4 5 6 5 7 6  0 1 4 1 5 4  2 6 3 3 6 7  0 4 2 2 4 6  1 3 5 3 7 " \
     "5] \"point3 P\" [" X0 " " Y0 " " Z0 " " X1 " " Y0 " " Z0 " " X0 " " Y1 " " Z0 " " X1 " " Y1 " " Z0 " " X0 " " Y0         \
     " " Z1 " " X1 " " Y0 " " Z1 " " X0 " " Y1 " " Z1 " " X1 " " Y1 " " Z1 "]\n"
+#define QUAD(P) "Shape \"bilinearmesh\" \"point3 P\" [" P "]\n"
+
+/* A board on the plane y = 0, and its sides. */
 #define SLAT(Z0, Z1)                                                                                                   \
     QUAD("-1 .02 " Z0 "  1 .02 " Z0 "  -1 .02 " Z1 "  1 .02 " Z1)                                                      \
     QUAD("-1 0 " Z0 "  1 0 " Z0 "  -1 .02 " Z0 "  1 .02 " Z0)                                                          \
     QUAD("-1 0 " Z1 "  1 0 " Z1 "  -1 .02 " Z1 "  1 .02 " Z1)
-#define QUAD(P) "Shape \"bilinearmesh\" \"point3 P\" [" P "]\n"
 
 /* 16 curves that grow out of the plane y = 0 and lean, and one that lies across it, 1 mm above. */
 #define CURVE(TYPE, WIDTHS, P) "Shape \"curve\" \"string type\" " TYPE WIDTHS " \"point3 P\" [" P "]\n"
@@ -28,6 +30,11 @@
     NEXT("-.75", "0", "-.75")                                                                                          \
     BLADES(TYPE)                                                                                                       \
     NEXT(".5", "0", "-1.5") BLADES(TYPE) NEXT(".5", "0", "-1.5") BLADES(TYPE) NEXT(".5", "0", "-1.5") BLADES(TYPE)
+#define POST BOX("-.01", ".01", "0.05", "0.15", "-.01", ".01")
+#define POSTS                                                                                                          \
+    NEXT("-.75", "0", "-.25")                                                                                          \
+    POST NEXT(".5", "0", "0") POST NEXT(".5", "0", "0") POST NEXT(".5", "0", "0") POST NEXT("0", "0", ".5")            \
+        POST NEXT("-.5", "0", "0") POST NEXT("-.5", "0", "0") POST NEXT("-.5", "0", "0") POST
 #define TUBE   "\"cylinder\""
 #define FLAT   "\"flat\""
 #define RIBBON "\"ribbon\" \"normal N\" [0 .3 1 1 .5 0]"
@@ -79,19 +86,7 @@ static const served_case CASES[] = {
      {{0.25f, 0.25f}, {1, 1}}},
     {"posts on a board with ten times the light of the wall behind it",
      "Shape \"trianglemesh\" \"integer indices\" [0 1 2 1 3 2] \"point3 P\" [-1 0 -1  1 0 -1  -1 0 1  1 0 1]\n" QUAD(
-         "-1 0.05 -0.5  1 0.05 -0.5  -1 0.05 0.5  1 0.05 0.5") "Translate -0.75 0 -0.25\n" BOX("-.01", ".01", "0.05",
-                                                                                               "0.15", "-.01",
-                                                                                               ".01") "Translate .5 0 0\n" BOX("-.01",
-                                                                                                                               ".01", "0.05", "0.15", "-.01", ".01") "Translate .5 0 0\n" BOX("-.01", ".01", "0.05", "0.15", "-.01", ".01") "Translate .5 0 0\n" BOX("-.01", ".01", "0.05", "0.15", "-.01", ".01") "Translate 0 0 .5\n" BOX("-.01",
-                                                                                                                                                                                                                                                                                                                                            ".01", "0.05", "0.15", "-.01", ".01") "Translate -.5 0 0\n" BOX("-.01", ".01", "0.05", "0.15", "-.01", ".01") "Translate -.5 0 0\n" BOX("-.01",
-                                                                                                                                                                                                                                                                                                                                                                                                                                                                                    ".01",
-                                                                                                                                                                                                                                                                                                                                                                                                                                                                                    "0.05",
-                                                                                                                                                                                                                                                                                                                                                                                                                                                                                    "0.15",
-                                                                                                                                                                                                                                                                                                                                                                                                                                                                                    "-.01",
-                                                                                                                                                                                                                                                                                                                                                                                                                                                                                    ".01") "Translate -.5 0 0\n" BOX("-.01",
-                                                                                                                                                                                                                                                                                                                                                                                                                                                                                                                     ".01", "0.05", "0.15",
-                                                                                                                                                                                                                                                                                                                                                                                                                                                                                                                     "-.01",
-                                                                                                                                                                                                                                                                                                                                                                                                                                                                                                                     ".01") "Translate 0 0 0\n",
+         "-1 0.05 -0.5  1 0.05 -0.5  -1 0.05 0.5  1 0.05 0.5") POSTS,
      0.3f,
      {0, 0, 0},
      1.5f,
