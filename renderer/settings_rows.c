@@ -270,12 +270,14 @@ static const setting_row ROWS[] = {
               .argument = "F",
               .section = "Light",
               .help = "how much photons decide where gather rays go, from 0 (not at all) to 1 (default 0.5; with "
-                      "--photon-paths 0); the rest is the cosine",
-              .manual = "How much photons decide where gather rays go, from 0 to 1; 0.5 is the default, and 0 with "
-                        "*--photon-paths*, since each photon that comes or goes changes them. Of a "
-                        "gather's rays this share goes where the photons around it came from, less where they are "
-                        "few, and the rest by the cosine. 0 guides none. The light is the same; noise is less where "
-                        "light comes from few directions."},
+                      "--photon-paths 0), and a quarter as much where rays of rough reflections do",
+              .manual =
+                  "How much photons decide where gather rays go, from 0 to 1; 0.5 is the default, and 0 with "
+                  "*--photon-paths*, since each photon that comes or goes changes them. Of a "
+                  "gather's rays this share goes where the photons around it came from, less where they are "
+                  "few, and the rest by the cosine. A quarter of it is the share of the rays of rough reflections "
+                  "that go where caustics came from. 0 guides none. The light is the same; noise is less where "
+                  "light comes from few directions."},
      FIELD(gather_guiding),
      .kind = SETTING_NUMBER,
      .initial = AG_GATHER_GUIDING_AUTOMATIC,

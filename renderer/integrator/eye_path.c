@@ -1,16 +1,17 @@
 /* eye_path.c: see eye_path.h. */
 #include "integrator/eye_path.h"
 
+#include "glint_guide.h"
 #include "integrator/direct_lighting.h"
 #include "integrator/first_hit.h"
 
-eye_path eye_path_begin(const camera_sample *from, int roulette_after, bool wants_parts)
+eye_path eye_path_begin(const camera_sample *from, eye_roulette roulette, bool wants_parts)
 {
     return (eye_path){.where = from->where,
                       .ray = from->ray,
                       .throughput = rgb_gray(1.0f),
                       .share = 1.0f,
-                      .roulette_after = roulette_after,
+                      .roulette = roulette,
                       .scattered_from = from->ray.origin,
                       .scatter_count = 1,
                       .shared = 1.0f / (float)split_camera_rays(from->split),
@@ -162,6 +163,49 @@ void eye_path_add_direct(const transport *t, eye_worker *worker, const eye_path 
         eye_sample_add_group(sample, lamp->group, rgb_scale(brought, kept));
 }
 
+/* The share of the samples of rough lobes, of those that gather guiding has of gather rays, that glints guide. They are
+ * few, since these rays bring other light too, whose variance grows by that share at most. */
+static const float GLINT_SHARE = 0.25f;
+
+/* Returns the share of the samples of these lobes that the guide found at the vertex draws; 0: there is none. */
+static float find_glints(const transport *t, const vertex *v, bsdf_lobes lobes, glint_guide *out_guide)
+{
+    const bsdf *b = &v->scattering;
+    if (!t->caustic || lobes != BSDF_TRACED || v->is_in_medium || (b->traced_lobes & b->smooth_lobes) != 0 ||
+        bsdf_scatters_through(b, lobes))
+        return 0.0f;
+    float share = GLINT_SHARE * t->settings->gather_guiding;
+    map_point at = vertex_map_point(t->s, v);
+    return share > 0.0f && glint_guide_find(&t->caustic->tree, at.position, at.facing_normal, out_guide) ? share : 0.0f;
+}
+
+/* Samples a direction by the lobes or, for a share of the samples, by where caustics come from, and weighs it by the
+ * density of both together. Its pdf is that of the lobes alone, against which shadow rays are weighted. */
+static bool sample_direction(const transport *t, const vertex *v, bsdf_lobes lobes, float u_lobe, vec2 u,
+                             bsdf_sample *out)
+{
+    const bsdf *b = &v->scattering;
+    glint_guide glints;
+    float share = find_glints(t, v, lobes, &glints);
+    if (!(share > 0.0f))
+        return bsdf_sample_direction(b, lobes, BSDF_RADIANCE, u_lobe, u, out);
+    if (u_lobe < share) {
+        vec3 direction = glint_guide_sample(&glints, u_lobe / share, u);
+        *out = (bsdf_sample){.direction = direction,
+                             .weight = bsdf_evaluate(b, lobes, BSDF_RADIANCE, direction),
+                             .pdf_solid_angle = bsdf_pdf(b, lobes, BSDF_RADIANCE, direction),
+                             .group = BSDF_TRACED};
+        if (!(out->pdf_solid_angle > 0.0f))
+            return false;
+        out->weight = rgb_scale(out->weight, 1.0f / out->pdf_solid_angle);
+    } else if (!bsdf_sample_direction(b, lobes, BSDF_RADIANCE, (u_lobe - share) / (1.0f - share), u, out)) {
+        return false;
+    }
+    float density = share * glint_guide_density(&glints, out->direction) + (1.0f - share) * out->pdf_solid_angle;
+    out->weight = rgb_scale(out->weight, out->pdf_solid_angle / density);
+    return !rgb_is_black(out->weight);
+}
+
 bool eye_path_go_on(const transport *t, const vertex *v, bsdf_lobes lobes, float u_lobe, int branch_count,
                     eye_path *path)
 {
@@ -169,16 +213,16 @@ bool eye_path_go_on(const transport *t, const vertex *v, bsdf_lobes lobes, float
     int key = eye_path_key(path);
     bool is_last = eye_path_is_last(t, path), may_go_straight = transport_is_open_pane(t, v);
     if ((is_last && !may_go_straight) || !bsdf_has(&v->scattering, lobes) ||
-        !bsdf_sample_direction(&v->scattering, lobes, BSDF_RADIANCE, u_lobe,
-                               sampler_2d(&path->where, SAMPLE_SCATTER, key), &next))
+        !sample_direction(t, v, lobes, u_lobe, sampler_2d(&path->where, SAMPLE_SCATTER, key), &next))
         return false;
     bool goes_straight = may_go_straight && next.is_straight;
     if (is_last && !goes_straight)
         return false;
     path->throughput = rgb_mul(path->throughput, next.weight);
     path->in_media += v->is_in_medium;
-    if (path->vertex >= path->roulette_after &&
-        !transport_survives(&path->throughput, path->in_media, sampler_2d(&path->where, SAMPLE_ROULETTE, key).x))
+    float level = path->in_media > 0 ? medium_roulette_level(path->in_media) : path->roulette.level;
+    if (path->vertex >= path->roulette.after &&
+        !transport_survives(&path->throughput, level, sampler_2d(&path->where, SAMPLE_ROULETTE, key).x))
         return false;
     path->vertex++;
     if (goes_straight) {

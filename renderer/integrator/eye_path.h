@@ -16,6 +16,13 @@ typedef struct part_shares {
     rgb of[LIGHT_PART_COUNT];
 } part_shares;
 
+/* Roulette decides whether a path goes on from this vertex on, where its throughput is below the level; behind
+ * scatterings by media their own level counts (medium_roulette_level). */
+typedef struct eye_roulette {
+    int after;
+    float level;
+} eye_roulette;
+
 typedef struct eye_path {
     sampler where; /* the branch's; each branch takes other numbers of the same sequences */
     scene_ray ray; /* to be followed next */
@@ -24,7 +31,7 @@ typedef struct eye_path {
     int vertex;     /* the number of the vertex that the ray will meet, from 0 on */
     int ways_taken; /* at how many smooth surfaces the path was split by their two ways */
     int vertex_key; /* added to that number where random numbers are drawn */
-    int roulette_after; /* the vertex from which on roulette decides whether the path goes on */
+    eye_roulette roulette;
     int scatterings;    /* so far; to pass a pane straight may count as none, and then changes no member below */
     int in_media;       /* those of them by media */
     int first_gathered; /* the number, from 1 on, of the first scattering by a gathered lobe; 0: none */
@@ -37,7 +44,7 @@ typedef struct eye_path {
     part_shares parts; /* valid where wants_parts */
 } eye_path;
 
-eye_path eye_path_begin(const camera_sample *from, int roulette_after, bool wants_parts);
+eye_path eye_path_begin(const camera_sample *from, eye_roulette roulette, bool wants_parts);
 
 /* Returns the number of the vertex by which random numbers are drawn. */
 static inline int eye_path_key(const eye_path *path) { return path->vertex + path->vertex_key; }

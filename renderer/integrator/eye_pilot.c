@@ -103,7 +103,7 @@ static void trace_importon(const transport *t, eye_worker *worker, const gather_
         if (!bsdf_sample_direction(&v.scattering, BSDF_ALL, BSDF_RADIANCE, u_lobe, u, &next))
             return;
         throughput = rgb_mul(throughput, next.weight);
-        if (!transport_survives(&throughput, 0, rng_float(&random)))
+        if (!transport_survives(&throughput, 1.0f, rng_float(&random)))
             return;
         if (scatterings > 0 && next.group == BSDF_GATHERED) {
             map_point at = vertex_map_point(t->s, &v);
@@ -232,7 +232,7 @@ static void look(const pilot_job *job, eye_worker *worker, int x, int y, pilot_r
                           .ray = camera_generate_ray(&s->camera, ((float)x + within.x) / (float)job->width,
                                                      ((float)y + within.y) / (float)job->height, job->aspect,
                                                      sampler_2d(&where, SAMPLE_LENS, 0), time)};
-    eye_path path = eye_path_begin(&from, SHADING_ROULETTE_AFTER, false);
+    eye_path path = eye_path_begin(&from, SHADING_ROULETTE, false);
     for (;;) {
         vertex v;
         if (!eye_path_trace(t, worker, &path, NULL, &v)) {

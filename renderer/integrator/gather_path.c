@@ -133,7 +133,7 @@ static bool scatter(const transport *t, eye_worker *worker, gather_ray *g, const
         return false;
     g->throughput = rgb_mul(g->throughput, next.weight);
     if ((g->scatterings >= ROULETTE_AFTER || lobes == BSDF_GATHERED) &&
-        !transport_survives(&g->throughput, g->in_media, rng_float(&g->random)))
+        !transport_survives(&g->throughput, medium_roulette_level(g->in_media), rng_float(&g->random)))
         return false;
     bool goes_straight = transport_is_open_pane(t, v) && next.is_straight;
     g->scatterings += !goes_straight;
@@ -229,7 +229,7 @@ bool gather_path_bounce(const transport *t, eye_worker *worker, rng random, floa
     *in_out_known = rgb_add(*in_out_known, rgb_mul(throughput, local));
     vec2 u = rng_vec2(&random);
     float u_end = rng_float(&random);
-    if (left == 0 || !transport_survives(&throughput, 0, rng_float(&random)) ||
+    if (left == 0 || !transport_survives(&throughput, 1.0f, rng_float(&random)) ||
         !bsdf_sample_direction(&v.scattering, BSDF_GATHERED, BSDF_RADIANCE, 0.0f, u, &next))
         return false;
     scene_ray ray = transport_scattered_ray(t, &v, next.direction, false);

@@ -4,7 +4,7 @@
 #include "integrator/eye_path.h"
 #include "integrator/integrator.h"
 
-enum { ROULETTE_AFTER = 3 };
+static const eye_roulette ROULETTE = {3, 1.0f};
 
 /* Picks one group of lobes by its share, where it matters which group scattered: rough lobes of both groups may send
  * light the same way. The random number is evenly distributed again afterwards. */
@@ -21,7 +21,7 @@ static bsdf_lobes pick_group(const vertex *v, float *in_out_u, rgb *in_out_throu
 void path_tracing_radiance(const transport *t, eye_worker *worker, const camera_sample *from, eye_sample *in_out)
 {
     bool wants_all = transport_wants_all_light(t);
-    eye_path path = eye_path_begin(from, ROULETTE_AFTER, in_out->layers != NULL);
+    eye_path path = eye_path_begin(from, ROULETTE, in_out->layers != NULL);
     for (;;) {
         vertex v;
         /* indirect light leaves out lamps that are seen, and light that falls straight on the first diffuse surface */

@@ -298,5 +298,5 @@ static void follow(const transport *t, eye_worker *worker, const camera_sample *
 
 void shading_radiance(const transport *t, eye_worker *worker, const camera_sample *from, eye_sample *in_out)
 {
-    follow(t, worker, from, eye_path_begin(from, SHADING_ROULETTE_AFTER, in_out->layers != NULL), in_out);
+    follow(t, worker, from, eye_path_begin(from, SHADING_ROULETTE, in_out->layers != NULL), in_out);
 }

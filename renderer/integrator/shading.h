@@ -11,8 +11,9 @@
  * 2001, 8.2: an approximate evaluation where the contribution is low). */
 static const float SHADING_LOW_CONTRIBUTION = 0.03f;
 
-/* The vertex of an eye path from which on it goes on by roulette. */
-enum { SHADING_ROULETTE_AFTER = 4 };
+/* Eye paths are of traced lobes alone, few and short, and a lamp that one meets behind glass may be a thousand times as
+ * bright as all around: a faint path that roulette had made sixteen times as strong would show it as a speck. */
+static const eye_roulette SHADING_ROULETTE = {4, 1.0f / 16.0f};
 
 /* Adds the radiance along the ray to a sample that has nothing in it but its bounds and room for layers. Gathered light
  * comes later, from the worker's batch once that is resolved. */

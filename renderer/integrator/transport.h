@@ -134,12 +134,11 @@ static inline ray_cone transport_gather_cone(const vertex *v)
     return ray_cone_is_wide(c) ? (ray_cone){fabsf(c->width), RAY_CONE_DIFFUSE_SPREAD, true} : *c;
 }
 
-/* Roulette: returns whether a path with this throughput goes on. in_media: how often media have scattered the path
- * (medium_roulette_level). u: a random number in [0, 1). The throughput of a survivor is divided by the probability to
- * survive. */
-static inline bool transport_survives(rgb *in_out_throughput, int in_media, float u)
+/* Roulette: returns whether a path with this throughput goes on, as all do that have this level at least; fainter ones
+ * that survive have it then. u: a random number in [0, 1). */
+static inline bool transport_survives(rgb *in_out_throughput, float level, float u)
 {
-    float survival = fminf(1.0f, rgb_max(*in_out_throughput) / medium_roulette_level(in_media));
+    float survival = fminf(1.0f, rgb_max(*in_out_throughput) / level);
     if (u >= survival)
         return false;
     *in_out_throughput = rgb_scale(*in_out_throughput, 1.0f / survival);

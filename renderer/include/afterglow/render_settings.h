@@ -96,8 +96,9 @@ typedef struct ag_render_settings {
                                   Where photons are sparse, and where surfaces curve, more are taken, so that each
                                   photon has an irradiance photon nearby. Default 1 */
     float gather_guiding; /* share of the gather rays, [0, 1], whose directions follow the incident directions of the
-                             photons nearby, where there are many; the others are sampled by the cosine. It changes
-                             the noise, not the light. Default
+                             photons nearby, where there are many; the others are sampled by the cosine. A quarter
+                             of it is the share of rough reflections' rays that follow caustic photons. It changes the
+                             noise, not the light. Default
                              AG_GATHER_GUIDING_AUTOMATIC: AG_DEFAULT_GATHER_GUIDING, but 0 with photon_paths, since
                              each photon that comes or goes changes the directions around it */
     uint64_t photon_seed; /* seed of the photons, so that pictures with different seeds can share a kept photon map.
