@@ -3,34 +3,38 @@
 
 #include "math/sampling.h"
 
-/* The cones around a photon's direction: 1 - the cosine of 2, 6 and 18 degrees. Photons keep their direction within one
- * degree; from a near lamp it changes much between the photons. */
+/* The cones around a photon's direction: 1 - the cosine of 2, 6 and 18 degrees. Photons keep their direction within a
+ * degree and a half; from a near lamp it changes much between the photons. */
 enum { CONES = 3 };
 static const float CONE[CONES] = {6.0917e-4f, 5.4781e-3f, 4.8943e-2f};
+
+/* What lies on a cone's rim counts as inside, as rounded. */
+static const float ROUNDED_UP = 1.0f + 1e-5f;
 
 /* The least number of photons of a guide, and the least cosine between their normals and the point's. */
 enum { LEAST = 8 };
 static const float NORMAL_MIN_COS = 0.8f;
 
-bool glint_guide_find(const photon_tree *tree, vec3 position, vec3 normal, glint_guide *out)
+bool glint_guide_find(const photon_tree *tree, vec3 position, vec3 normal, float reach, glint_guide *out_guide)
 {
-    out->count = 0;
+    out_guide->count = 0;
     if (tree->count == 0)
         return false;
     uint32_t first = photon_tree_leaf(tree, position) / GLINT_BLOCKS * GLINT_PHOTONS;
     float sum = 0.0f;
     for (uint32_t i = first; i < tree->count && i < first + GLINT_PHOTONS; i++) {
-        if (!(vec3_dot(direction_decode(photon_block_normal(tree->blocks, i)), normal) > NORMAL_MIN_COS))
+        if (!(vec3_distance_squared(photon_block_position(tree->blocks, i), position) < reach * reach) ||
+            !(vec3_dot(direction_decode(photon_block_normal(tree->blocks, i)), normal) > NORMAL_MIN_COS))
             continue;
         const photon_block *b = &tree->blocks[i / PHOTON_BLOCK_LANES];
         sum += flux_largest(photon_block_flux(tree->blocks, i));
-        out->to_light[out->count] = vec3_negate(arrival_direction(b->direction[i % PHOTON_BLOCK_LANES]));
-        out->end[out->count++] = sum;
+        out_guide->to_light[out_guide->count] = vec3_negate(arrival_direction(b->direction[i % PHOTON_BLOCK_LANES]));
+        out_guide->end[out_guide->count++] = sum;
     }
-    if (out->count < LEAST || !(sum > 0.0f && sum < INFINITY))
+    if (out_guide->count < LEAST || !(sum > 0.0f && sum < INFINITY))
         return false;
-    for (uint32_t i = 0; i < out->count; i++)
-        out->end[i] /= sum;
+    for (uint32_t i = 0; i < out_guide->count; i++)
+        out_guide->end[i] /= sum;
     return true;
 }
 
@@ -54,7 +58,7 @@ float glint_guide_density(const glint_guide *guide, vec3 direction)
         float away = 1.0f - vec3_dot(guide->to_light[i], direction), share = guide->end[i] - begin;
         begin = guide->end[i];
         for (int k = 0; k < CONES; k++)
-            inside[k] += away <= CONE[k] ? share : 0.0f;
+            inside[k] += away <= CONE[k] * ROUNDED_UP ? share : 0.0f;
     }
     for (int k = 0; k < CONES; k++)
         density += inside[k] / (CONES * 2.0f * AG_PI * CONE[k]);

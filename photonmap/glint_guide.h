@@ -18,9 +18,10 @@ typedef struct glint_guide {
     vec3 to_light[GLINT_PHOTONS]; /* against the photon's way, unit */
 } glint_guide;
 
-/* Finds the photons around a point that lie on surfaces which face alike: of 64 neighbours in the tree. normal: unit,
- * on the side of the light. Returns false where there are fewer than eight. */
-bool glint_guide_find(const photon_tree *tree, vec3 position, vec3 normal, glint_guide *out_guide);
+/* Finds the photons within reach (> 0, scene units) of a point that lie on surfaces which face alike, of 64 neighbours
+ * in the tree. normal: unit, on the side of the light. Returns false where there are fewer than eight, or all are
+ * black. */
+bool glint_guide_find(const photon_tree *tree, vec3 position, vec3 normal, float reach, glint_guide *out_guide);
 
 /* Returns a unit direction; u_pick and u: random numbers in [0, 1). It may lie below the surface. */
 vec3 glint_guide_sample(const glint_guide *guide, float u_pick, vec2 u);

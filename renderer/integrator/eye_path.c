@@ -1,7 +1,6 @@
 /* eye_path.c: see eye_path.h. */
 #include "integrator/eye_path.h"
 
-#include "glint_guide.h"
 #include "integrator/direct_lighting.h"
 #include "integrator/first_hit.h"
 
@@ -164,56 +163,58 @@ void eye_path_add_direct(const transport *t, eye_worker *worker, const eye_path 
 }
 
 /* The share of the samples of rough lobes, of those that gather guiding has of gather rays, that glints guide. They are
- * few, since these rays bring other light too, whose variance grows by that share at most. */
+ * few, since these rays bring other light too, whose mean square grows by a seventh at most if they are an eighth. */
 static const float GLINT_SHARE = 0.25f;
 
-/* Returns the share of the samples of these lobes that the guide found at the vertex draws; 0: there is none. */
-static float find_glints(const transport *t, const vertex *v, bsdf_lobes lobes, glint_guide *out_guide)
+/* Photons guide from within this many of the largest radii of the caustic map's estimates. */
+static const float GLINT_REACH = 4.0f;
+
+const glint_guide *eye_path_find_glints(const transport *t, const vertex *v, glint_guide *out_guide)
 {
-    const bsdf *b = &v->scattering;
-    if (!t->caustic || lobes != BSDF_TRACED || v->is_in_medium || (b->traced_lobes & b->smooth_lobes) != 0 ||
-        bsdf_scatters_through(b, lobes))
-        return 0.0f;
-    float share = GLINT_SHARE * t->settings->gather_guiding;
+    bool may_meet_lamps = t->caustic && t->can_meet_lights && transport_wants_all_light(t);
+    if (!may_meet_lamps || !(t->settings->gather_guiding > 0.0f) || v->is_in_medium ||
+        !bsdf_is_rough_reflection(&v->scattering, BSDF_TRACED))
+        return NULL;
     map_point at = vertex_map_point(t->s, v);
-    return share > 0.0f && glint_guide_find(&t->caustic->tree, at.position, at.facing_normal, out_guide) ? share : 0.0f;
+    float reach = GLINT_REACH * t->caustic->max_radius;
+    return glint_guide_find(&t->caustic->tree, at.position, at.facing_normal, reach, out_guide) ? out_guide : NULL;
 }
 
-/* Samples a direction by the lobes or, for a share of the samples, by where caustics come from, and weighs it by the
- * density of both together. Its pdf is that of the lobes alone, against which shadow rays are weighted. */
-static bool sample_direction(const transport *t, const vertex *v, bsdf_lobes lobes, float u_lobe, vec2 u,
-                             bsdf_sample *out)
+/* Samples a direction by the lobes or, for a share of the samples, by glints, and weighs it by the density of both
+ * together. Its pdf is that of the lobes alone, against which shadow rays are weighted. */
+static bool sample_guided(const transport *t, const bsdf *b, bsdf_lobes lobes, const glint_guide *glints, float u_lobe,
+                          vec2 u, bsdf_sample *out)
 {
-    const bsdf *b = &v->scattering;
-    glint_guide glints;
-    float share = find_glints(t, v, lobes, &glints);
-    if (!(share > 0.0f))
-        return bsdf_sample_direction(b, lobes, BSDF_RADIANCE, u_lobe, u, out);
+    float share = GLINT_SHARE * t->settings->gather_guiding;
     if (u_lobe < share) {
-        vec3 direction = glint_guide_sample(&glints, u_lobe / share, u);
-        *out = (bsdf_sample){.direction = direction,
-                             .weight = bsdf_evaluate(b, lobes, BSDF_RADIANCE, direction),
-                             .pdf_solid_angle = bsdf_pdf(b, lobes, BSDF_RADIANCE, direction),
-                             .group = BSDF_TRACED};
-        if (!(out->pdf_solid_angle > 0.0f))
+        vec3 direction = glint_guide_sample(glints, u_lobe / share, u);
+        float pdf = bsdf_pdf(b, lobes, BSDF_RADIANCE, direction);
+        if (!(pdf > 0.0f))
             return false;
-        out->weight = rgb_scale(out->weight, 1.0f / out->pdf_solid_angle);
-    } else if (!bsdf_sample_direction(b, lobes, BSDF_RADIANCE, (u_lobe - share) / (1.0f - share), u, out)) {
-        return false;
+        float density = share * glint_guide_density(glints, direction) + (1.0f - share) * pdf;
+        rgb value = bsdf_evaluate(b, lobes, BSDF_RADIANCE, direction);
+        *out = (bsdf_sample){
+            .direction = direction, .weight = rgb_scale(value, 1.0f / density), .pdf_solid_angle = pdf, .group = lobes};
+        return !rgb_is_black(value);
     }
-    float density = share * glint_guide_density(&glints, out->direction) + (1.0f - share) * out->pdf_solid_angle;
+    if (!bsdf_sample_direction(b, lobes, BSDF_RADIANCE, float_below_one((u_lobe - share) / (1.0f - share)), u, out))
+        return false;
+    float density = share * glint_guide_density(glints, out->direction) + (1.0f - share) * out->pdf_solid_angle;
     out->weight = rgb_scale(out->weight, out->pdf_solid_angle / density);
-    return !rgb_is_black(out->weight);
+    return true;
 }
 
-bool eye_path_go_on(const transport *t, const vertex *v, bsdf_lobes lobes, float u_lobe, int branch_count,
-                    eye_path *path)
+bool eye_path_go_on(const transport *t, const vertex *v, bsdf_lobes lobes, const glint_guide *glints, float u_lobe,
+                    int branch_count, eye_path *path)
 {
     bsdf_sample next;
     int key = eye_path_key(path);
     bool is_last = eye_path_is_last(t, path), may_go_straight = transport_is_open_pane(t, v);
-    if ((is_last && !may_go_straight) || !bsdf_has(&v->scattering, lobes) ||
-        !sample_direction(t, v, lobes, u_lobe, sampler_2d(&path->where, SAMPLE_SCATTER, key), &next))
+    if ((is_last && !may_go_straight) || !bsdf_has(&v->scattering, lobes))
+        return false;
+    vec2 u = sampler_2d(&path->where, SAMPLE_SCATTER, key);
+    if (glints ? !sample_guided(t, &v->scattering, lobes, glints, u_lobe, u, &next)
+               : !bsdf_sample_direction(&v->scattering, lobes, BSDF_RADIANCE, u_lobe, u, &next))
         return false;
     bool goes_straight = may_go_straight && next.is_straight;
     if (is_last && !goes_straight)

@@ -7,6 +7,7 @@
 #ifndef AFTERGLOW_EYE_PATH_H
 #define AFTERGLOW_EYE_PATH_H
 
+#include "glint_guide.h"
 #include "integrator/camera_sample.h"
 #include "integrator/transport.h"
 
@@ -16,11 +17,11 @@ typedef struct part_shares {
     rgb of[LIGHT_PART_COUNT];
 } part_shares;
 
-/* Roulette decides whether a path goes on from this vertex on, where its throughput is below the level; behind
- * scatterings by media their own level counts (medium_roulette_level). */
+/* From a vertex on, roulette decides whether a path goes on whose throughput is below a level. Behind scatterings by
+ * media their own level counts (medium_roulette_level). */
 typedef struct eye_roulette {
-    int after;
-    float level;
+    int after;   /* the number of that vertex */
+    float level; /* > 0; 1: as much as the path began with */
 } eye_roulette;
 
 typedef struct eye_path {
@@ -88,9 +89,14 @@ void eye_path_add_emitted(const transport *t, const eye_path *path, const vertex
 void eye_path_add_direct(const transport *t, eye_worker *worker, const eye_path *path, const vertex *v,
                          bsdf_lobes lobes, int scatter_count, eye_sample *in_out_sample);
 
+/* Finds where glints come from (glint_guide.h), for the ways on from the vertex by traced lobes. Returns out_guide, or
+ * NULL where nothing guides them. */
+const glint_guide *eye_path_find_glints(const transport *t, const vertex *v, glint_guide *out_guide);
+
 /* Sends the path on from the vertex by one of these lobes, as one of branch_count branches from there; u_lobe in [0, 1)
- * picks it. Returns false where the path ends: by the lobes, by roulette, or by the limit of scatterings. */
-bool eye_path_go_on(const transport *t, const vertex *v, bsdf_lobes lobes, float u_lobe, int branch_count,
-                    eye_path *in_out_path);
+ * picks it. glints: see eye_path_find_glints; NULL: nothing guides it. Returns false where the path ends: by the lobes,
+ * by roulette, or by the limit of scatterings. */
+bool eye_path_go_on(const transport *t, const vertex *v, bsdf_lobes lobes, const glint_guide *glints, float u_lobe,
+                    int branch_count, eye_path *in_out_path);
 
 #endif

@@ -21,6 +21,9 @@ enum { LIT_PATHS = 12288, ENCLOSURE_PATHS = 2048 };
 /* The stream of the lamps that importons look for. */
 enum { STREAM_LAMPS = 1 };
 /* Sampler keys apart from the picture's own. */
+/* All points that a path finds count alike, so that roulette alone makes them as frequent as its light is bright. */
+static const eye_roulette ROULETTE = {4, 1.0f};
+
 static const uint64_t PILOT_SEED = 0x70696c6f74u;
 
 static void add_point(pilot_row *row, pilot_list which, vec3 position, vec3 normal)
@@ -232,7 +235,7 @@ static void look(const pilot_job *job, eye_worker *worker, int x, int y, pilot_r
                           .ray = camera_generate_ray(&s->camera, ((float)x + within.x) / (float)job->width,
                                                      ((float)y + within.y) / (float)job->height, job->aspect,
                                                      sampler_2d(&where, SAMPLE_LENS, 0), time)};
-    eye_path path = eye_path_begin(&from, SHADING_ROULETTE, false);
+    eye_path path = eye_path_begin(&from, ROULETTE, false);
     for (;;) {
         vertex v;
         if (!eye_path_trace(t, worker, &path, NULL, &v)) {
@@ -241,7 +244,7 @@ static void look(const pilot_job *job, eye_worker *worker, int x, int y, pilot_r
         }
         if (!eye_path_is_last(t, &path) && note_vertex(job, worker, &v, &where, &path, out))
             return;
-        if (!eye_path_go_on(t, &v, BSDF_TRACED, eye_path_u_lobe(&path), 1, &path))
+        if (!eye_path_go_on(t, &v, BSDF_TRACED, NULL, eye_path_u_lobe(&path), 1, &path))
             return;
     }
 }

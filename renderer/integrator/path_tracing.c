@@ -4,7 +4,7 @@
 #include "integrator/eye_path.h"
 #include "integrator/integrator.h"
 
-static const eye_roulette ROULETTE = {3, 1.0f};
+static const eye_roulette ROULETTE = {3, 0.25f};
 
 /* Picks one group of lobes by its share, where it matters which group scattered: rough lobes of both groups may send
  * light the same way. The random number is evenly distributed again afterwards. */
@@ -40,7 +40,7 @@ void path_tracing_radiance(const transport *t, eye_worker *worker, const camera_
 
         float u_lobe = eye_path_u_lobe(&path);
         bsdf_lobes lobes = wants_all || has_met_diffuse ? BSDF_ALL : pick_group(&v, &u_lobe, &path.throughput);
-        if (!eye_path_go_on(t, &v, lobes, u_lobe, 1, &path))
+        if (!eye_path_go_on(t, &v, lobes, NULL, u_lobe, 1, &path))
             return;
     }
 }

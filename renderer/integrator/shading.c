@@ -215,7 +215,7 @@ static void follow(const transport *t, eye_worker *worker, const camera_sample *
                    eye_sample *sample);
 
 static void follow_branches(const transport *t, eye_worker *worker, const camera_sample *from, const eye_path *path,
-                            const vertex *v, uint32_t bits, eye_sample *sample)
+                            const vertex *v, const glint_guide *glints, uint32_t bits, eye_sample *sample)
 {
     int count = 1 << bits;
     for (int i = 0; i < count; i++) {
@@ -223,7 +223,7 @@ static void follow_branches(const transport *t, eye_worker *worker, const camera
         branch.where = sampler_branch(&path->where, bits, (uint32_t)i);
         branch.vertex_key += SAMPLER_KEY_BRANCHES * (int)bits;
         branch.share /= (float)count;
-        if (eye_path_go_on(t, v, BSDF_TRACED, eye_path_u_lobe(&branch), count, &branch))
+        if (eye_path_go_on(t, v, BSDF_TRACED, glints, eye_path_u_lobe(&branch), count, &branch))
             follow(t, worker, from, branch, sample);
     }
 }
@@ -280,18 +280,20 @@ static void follow(const transport *t, eye_worker *worker, const camera_sample *
             eye_path_add_direct(t, worker, &path, &v, BSDF_TRACED, 1 << bits, sample);
         two_ways ways;
         if (split_ways(&path, &v, &ways)) {
-            if (eye_path_go_on(t, &v, BSDF_TRACED, ways.u_faint, 1, &ways.faint))
+            if (eye_path_go_on(t, &v, BSDF_TRACED, NULL, ways.u_faint, 1, &ways.faint))
                 follow(t, worker, from, ways.faint, sample);
             path = ways.bright;
-            if (!eye_path_go_on(t, &v, BSDF_TRACED, ways.u_bright, 1, &path))
+            if (!eye_path_go_on(t, &v, BSDF_TRACED, NULL, ways.u_bright, 1, &path))
                 return;
             continue;
         }
+        glint_guide guide;
+        const glint_guide *glints = is_last ? NULL : eye_path_find_glints(t, &v, &guide);
         if (bits > 0) {
-            follow_branches(t, worker, from, &path, &v, bits, sample);
+            follow_branches(t, worker, from, &path, &v, glints, bits, sample);
             return;
         }
-        if (!eye_path_go_on(t, &v, BSDF_TRACED, eye_path_u_lobe(&path), 1, &path))
+        if (!eye_path_go_on(t, &v, BSDF_TRACED, glints, eye_path_u_lobe(&path), 1, &path))
             return;
     }
 }

@@ -12,7 +12,7 @@
 static const float SHADING_LOW_CONTRIBUTION = 0.03f;
 
 /* Eye paths are of traced lobes alone, few and short, and a lamp that one meets behind glass may be a thousand times as
- * bright as all around: a faint path that roulette had made sixteen times as strong would show it as a speck. */
+ * bright as all around: a faint path that roulette had made as strong as it began would show it as a speck. */
 static const eye_roulette SHADING_ROULETTE = {4, 1.0f / 16.0f};
 
 /* Adds the radiance along the ray to a sample that has nothing in it but its bounds and room for layers. Gathered light

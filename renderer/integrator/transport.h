@@ -135,7 +135,7 @@ static inline ray_cone transport_gather_cone(const vertex *v)
 }
 
 /* Roulette: returns whether a path with this throughput goes on, as all do that have this level at least; fainter ones
- * that survive have it then. u: a random number in [0, 1). */
+ * that survive have it then. level: > 0. u: a random number in [0, 1). */
 static inline bool transport_survives(rgb *in_out_throughput, float level, float u)
 {
     float survival = fminf(1.0f, rgb_max(*in_out_throughput) / level);

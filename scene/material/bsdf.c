@@ -63,6 +63,15 @@ bool bsdf_scatters_through(const bsdf *b, bsdf_lobes lobes)
     return false;
 }
 
+bool bsdf_is_rough_reflection(const bsdf *b, bsdf_lobes lobes)
+{
+    const unsigned set = bsdf_lobe_set(b, lobes);
+    for (unsigned left = set; left; left &= left - 1)
+        if (lobe_passes(b, __builtin_ctz(left)))
+            return false;
+    return set != 0 && (set & b->smooth_lobes) == 0;
+}
+
 static float probability_of(const bsdf *b, unsigned set)
 {
     float sum = 0.0f;

@@ -108,6 +108,9 @@ float bsdf_smooth_reflection_share(const bsdf *b, bsdf_lobes lobes);
 /* Returns whether any of these lobes that is not smooth scatters light from behind the surface, as seen from `out`. */
 bool bsdf_scatters_through(const bsdf *b, bsdf_lobes lobes);
 
+/* Returns whether these lobes are rough ones that reflect, at least one and no others. */
+bool bsdf_is_rough_reflection(const bsdf *b, bsdf_lobes lobes);
+
 /* Returns the probability that bsdf_sample_direction of all lobes picks one of these. */
 float bsdf_probability(const bsdf *b, bsdf_lobes lobes);
 

@@ -1,6 +1,6 @@
 /* test_glint_guide.c: what guides rays of rough reflections: directions fall into the cones around those that photons
- * came from, by flux, with the density that is told; photons of surfaces that face another way, and too few, guide
- * none. Threads: one. */
+ * came from, by flux, with the density that is told; photons of surfaces that face another way, far ones, and too few
+ * guide none. Threads: one. */
 /* ctest: sanitize */
 #include "glint_guide.h"
 
@@ -39,7 +39,7 @@ static double angle_between(vec3 a, vec3 b) { return acos(fmin(1.0, (double)vec3
 static glint_guide guide_at(const photon_map *map, vec3 normal)
 {
     glint_guide g;
-    assert_true(glint_guide_find(&map->tree, MIDDLE, normal, &g));
+    assert_true(glint_guide_find(&map->tree, MIDDLE, normal, 1.0f, &g));
     return g;
 }
 
@@ -113,21 +113,24 @@ static void the_density_is_that_of_the_samples(void **state)
     photon_map_reset(&map);
 }
 
-static void other_surfaces_and_few_photons_guide_none(void **state)
+static void what_faces_elsewhere_or_is_far_or_few_guides_none(void **state)
 {
     (void)state;
     photon_map map, empty = {0};
     glint_guide g;
     lit_from_two_sides(4096, (vec3){0.0f, 0.0f, -1.0f}, &map);
-    assert_false(glint_guide_find(&map.tree, MIDDLE, UP, &g));
+    assert_false(glint_guide_find(&map.tree, MIDDLE, UP, 1.0f, &g));
+    photon_map_reset(&map);
+    lit_from_two_sides(4096, UP, &map);
+    assert_false(glint_guide_find(&map.tree, (vec3){0.5f, 0.5f, 0.2f}, UP, 0.19f, &g));
     photon_map_reset(&map);
     lit_from_two_sides(7, UP, &map);
-    assert_false(glint_guide_find(&map.tree, MIDDLE, UP, &g));
+    assert_false(glint_guide_find(&map.tree, MIDDLE, UP, 1.0f, &g));
     photon_map_reset(&map);
     lit_from_two_sides(8, UP, &map);
-    assert_true(glint_guide_find(&map.tree, MIDDLE, UP, &g) && g.count == 8);
+    assert_true(glint_guide_find(&map.tree, MIDDLE, UP, 1.0f, &g) && g.count == 8);
     photon_map_reset(&map);
-    assert_false(glint_guide_find(&empty.tree, MIDDLE, UP, &g));
+    assert_false(glint_guide_find(&empty.tree, MIDDLE, UP, 1.0f, &g));
 }
 
 int main(void)
@@ -135,7 +138,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(directions_fall_into_cones),
         cmocka_unit_test(the_density_is_that_of_the_samples),
-        cmocka_unit_test(other_surfaces_and_few_photons_guide_none),
+        cmocka_unit_test(what_faces_elsewhere_or_is_far_or_few_guides_none),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -27,6 +27,7 @@ static const long long PHOTON_COUNT = IS_SANITIZED ? 5000 : 20000;
 #define DEFORMATION  PROGRAM_SCENES "deforming_blocks.pbrt"
 #define COINCIDENCES PROGRAM_SCENES "coincidences.pbrt"
 #define FOG          PROGRAM_SCENES "foggy_room.pbrt"
+#define GLINTS       PROGRAM_SCENES "glints.pbrt"
 #define PRINCIPLED   PROGRAM_SCENES "principled.pbrt" /* coats and rough metal */
 
 static void expect_same(const char *what, const picture *p, const picture *reference)
@@ -133,6 +134,7 @@ static void test_coats_and_metal(void **state)
 {
     (void)state;
     expect_same_for_all_threads(PRINCIPLED, NULL);
+    expect_same_for_all_threads(GLINTS, NULL); /* whose caustic photons guide rays of the coat */
 }
 
 static void test_unguided(void **state)
