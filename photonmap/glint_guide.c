@@ -21,10 +21,17 @@ bool glint_guide_find(const photon_tree *tree, vec3 position, vec3 normal, float
     if (tree->count == 0)
         return false;
     uint32_t first = photon_tree_leaf(tree, position) / GLINT_BLOCKS * GLINT_PHOTONS;
+    uint32_t last_code = UINT32_MAX; /* of a normal: neighbours mostly have the same one */
+    bool faces_alike = false;
     float sum = 0.0f;
     for (uint32_t i = first; i < tree->count && i < first + GLINT_PHOTONS; i++) {
-        if (!(vec3_distance_squared(photon_block_position(tree->blocks, i), position) < reach * reach) ||
-            !(vec3_dot(direction_decode(photon_block_normal(tree->blocks, i)), normal) > NORMAL_MIN_COS))
+        if (!(vec3_distance_squared(photon_block_position(tree->blocks, i), position) < reach * reach))
+            continue;
+        uint16_t code = photon_block_normal(tree->blocks, i);
+        if (code != last_code)
+            faces_alike = vec3_dot(direction_decode(code), normal) > NORMAL_MIN_COS;
+        last_code = code;
+        if (!faces_alike)
             continue;
         const photon_block *b = &tree->blocks[i / PHOTON_BLOCK_LANES];
         sum += flux_largest(photon_block_flux(tree->blocks, i));

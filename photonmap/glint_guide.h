@@ -9,7 +9,7 @@
 
 #include "photon_tree.h"
 
-enum { GLINT_BLOCKS = 4, GLINT_PHOTONS = GLINT_BLOCKS * PHOTON_BLOCK_LANES };
+enum { GLINT_BLOCKS = 2, GLINT_PHOTONS = GLINT_BLOCKS * PHOTON_BLOCK_LANES };
 
 /* The photons of a guide. A direction is drawn around one of them, picked by its flux, in one of three cones. */
 typedef struct glint_guide {
@@ -18,7 +18,7 @@ typedef struct glint_guide {
     vec3 to_light[GLINT_PHOTONS]; /* against the photon's way, unit */
 } glint_guide;
 
-/* Finds the photons within reach (> 0, scene units) of a point that lie on surfaces which face alike, of 64 neighbours
+/* Finds the photons within reach (> 0, scene units) of a point that lie on surfaces which face alike, of 32 neighbours
  * in the tree. normal: unit, on the side of the light. Returns false where there are fewer than eight, or all are
  * black. */
 bool glint_guide_find(const photon_tree *tree, vec3 position, vec3 normal, float reach, glint_guide *out_guide);

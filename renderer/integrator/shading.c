@@ -9,6 +9,9 @@
  * ways at each of its faces. */
 enum { BRANCHES_MAX = 8, SMOOTH_BRANCHES_MAX = 4 };
 
+/* Glints are looked for where the eye sees more than this share of them. */
+static const float GLINT_SHARE_SEEN = 1.0f / 8.0f;
+
 static const float SQRT_2 = 1.41421356f;
 
 /* A path is split at so many smooth surfaces, and only where the variance of a choice between their two ways, in the
@@ -288,7 +291,8 @@ static void follow(const transport *t, eye_worker *worker, const camera_sample *
             continue;
         }
         glint_guide guide;
-        const glint_guide *glints = is_last ? NULL : eye_path_find_glints(t, &v, &guide);
+        bool is_seen = !is_last && share_seen(&path) > GLINT_SHARE_SEEN;
+        const glint_guide *glints = is_seen ? eye_path_find_glints(t, &v, &guide) : NULL;
         if (bits > 0) {
             follow_branches(t, worker, from, &path, &v, glints, bits, sample);
             return;
