@@ -88,7 +88,7 @@ static void roulette_in_media(void **state)
             bool survives = true;
             for (int n = 1; survives && n <= SCATTERINGS; n++) {
                 throughput = rgb_scale(throughput, MEDIA[k].albedo);
-                survives = transport_survives(&throughput, n, rng_float(&random));
+                survives = transport_survives(&throughput, medium_roulette_level(n), rng_float(&random));
             }
             assert_true(!survives || throughput.r <= MEDIA[k].most);
             survivors += survives;
