@@ -32,6 +32,7 @@ static void lit_from_two_sides(uint32_t count, vec3 normal, photon_map *out)
     }
     photon_map_settings settings = {.nearest = 50, .max_radius = 0.5f, .surface_area = 1.0f};
     assert_int_equal(photon_map_create(&r.run, &set, &settings, 0.0, 1.0, out), AG_OK);
+    test_run_reset(&r);
 }
 
 static double angle_between(vec3 a, vec3 b) { return acos(fmin(1.0, (double)vec3_dot(a, b))) * 180.0 / PI; }
