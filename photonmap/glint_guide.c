@@ -8,7 +8,8 @@
 enum { CONES = 3 };
 static const float CONE[CONES] = {6.0917e-4f, 5.4781e-3f, 4.8943e-2f};
 
-/* What lies on a cone's rim counts as inside, as rounded. */
+/* Rounding may put a sample of a cone just beyond its rim. The density takes each cone as this much wider, so that no
+ * sample has a density of 0. */
 static const float ROUNDED_UP = 1.0f + 1e-5f;
 
 /* The least number of photons of a guide, and the least cosine between their normals and the point's. */

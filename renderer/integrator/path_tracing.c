@@ -4,6 +4,7 @@
 #include "integrator/eye_path.h"
 #include "integrator/integrator.h"
 
+/* Roulette that began at all of the light would leave up to 1.8 times the squared error, for as much time. */
 static const eye_roulette ROULETTE = {3, 0.25f};
 
 /* Picks one group of lobes by its share, where it matters which group scattered: rough lobes of both groups may send

@@ -44,7 +44,7 @@ static glint_guide guide_at(const photon_map *map, vec3 normal)
     return g;
 }
 
-/* The share of the flux in the guide's 64 photons that comes from the right. */
+/* The share of the flux in the guide's photons that comes from the right. */
 static double share_from_right(const glint_guide *g)
 {
     double share = 0.0;
