@@ -81,7 +81,7 @@ static void chain_of_mirrors(void **state)
     eye_init_with_photons(
         &e,
         "LightSource \"infinite\" \"rgb L\" [5 5 5] " MIRROR(
-            "0.8 0.8 0.8") "AttributeBegin Translate 0 0 0.5 Shape \"disk\" \"float radius\" 0.2 AttributeEnd "
+            "0.6 0.6 0.6") "AttributeBegin Translate 0 0 0.5 Shape \"disk\" \"float radius\" 0.2 AttributeEnd "
                            "AttributeBegin Translate 0 0 -0.5 Shape \"disk\" \"float radius\" 0.2 AttributeEnd",
         1000, NEAREST);
     mean_sum sum = {0};
@@ -92,7 +92,7 @@ static void chain_of_mirrors(void **state)
         ended += radiance == 0.0f;
     }
     assert_true(ended > SAMPLES / 10 && ended < SAMPLES * 19 / 20);
-    assert_mean(&sum, 5.0 * pow(0.8, 10.0), 1e-3);
+    assert_mean(&sum, 5.0 * pow(0.6, 10.0), 1e-3);
     eye_reset(&e);
 }
 
