@@ -163,16 +163,26 @@ static split_counts counts_at(double cost_per_variance, uint32_t further, const 
                           .lights = lights_of_ray(lights, further, c)};
 }
 
-/* Variance and cost of a camera sample that is split by these counts. */
-static camera_part split_by(const block_sums *sums, const split_counts *counts)
+/* The numbers that a camera sample is split into, on average. */
+typedef struct mean_counts {
+    double rays, lights, camera_rays; /* lights: of all camera rays */
+    double caustics;                  /* the share of camera samples that ask for caustics */
+} mean_counts;
+
+static mean_counts mean_counts_of(split_counts counts)
 {
-    const double rays = (double)counts->rays, camera_rays = (double)split_camera_rays(*counts);
-    const double lights = (double)counts->lights * camera_rays;
-    const double asked = (double)(1u << counts->caustic_bits); /* so many samples share an estimate of caustics */
-    camera_part part =
-        camera_part_of(sums, asked - 1.0, sums->cost_of_rest + sums->cost_of_caustic / asked, camera_rays);
-    part.variance += sums->by_ray / rays + sums->by_light / lights;
-    part.cost += sums->cost_of_ray * rays + sums->cost_of_light * lights;
+    const double camera_rays = (double)split_camera_rays(counts);
+    return (mean_counts){(double)counts.rays, (double)counts.lights * camera_rays, camera_rays,
+                         1.0 / (double)(1u << counts.caustic_bits)};
+}
+
+/* Variance and cost of a camera sample that is split by these counts. */
+static camera_part split_by(const block_sums *sums, mean_counts counts)
+{
+    camera_part part = camera_part_of(sums, 1.0 / counts.caustics - 1.0,
+                                      sums->cost_of_rest + sums->cost_of_caustic * counts.caustics, counts.camera_rays);
+    part.variance += sums->by_ray / counts.rays + sums->by_light / counts.lights;
+    part.cost += sums->cost_of_ray * counts.rays + sums->cost_of_light * counts.lights;
     return part;
 }
 
@@ -198,7 +208,7 @@ static split_counts best_of_block(const block_sums *sums, const choice *c)
         split_counts n = one;
         n.further = further;
         n.lights = lights_of_ray((double)one.lights, further, c);
-        camera_part part = split_by(sums, &n);
+        camera_part part = split_by(sums, mean_counts_of(n));
         if (part.variance * part.cost < least) {
             least = part.variance * part.cost;
             best = n;
@@ -324,14 +334,15 @@ static void add_group(const block_sums *sums, double cost_per_variance, const ch
     double caustics = wanted_count(cost_per_variance, sums->caustic, sums->cost_of_caustic);
     double camera_rays = wanted_camera_rays(cost_per_variance, sums);
     camera_rays = fmin(fmax(camera_rays, 1.0 + (double)c->least.further), 1.0 + (double)c->most.further);
-    rays = fmin(fmax(rays, (double)c->least.rays), (double)c->most.rays);
-    lights = fmin(fmax(lights, fmax((double)c->least_lights, (double)c->least.lights * camera_rays)),
-                  (double)c->most.lights * camera_rays);
-    caustics = fmin(fmax(caustics, 1.0 / (double)(1u << c->most.caustic_bits)), 1.0);
-    camera_part part = camera_part_of(sums, 1.0 / caustics - 1.0, sums->cost_of_rest, camera_rays);
-    whole->variance += part.variance + sums->by_ray / rays + sums->by_light / lights;
-    whole->cost +=
-        part.cost + sums->cost_of_ray * rays + sums->cost_of_light * lights + sums->cost_of_caustic * caustics;
+    mean_counts best = {.rays = fmin(fmax(rays, (double)c->least.rays), (double)c->most.rays),
+                        .lights =
+                            fmin(fmax(lights, fmax((double)c->least_lights, (double)c->least.lights * camera_rays)),
+                                 (double)c->most.lights * camera_rays),
+                        .camera_rays = camera_rays,
+                        .caustics = fmin(fmax(caustics, 1.0 / (double)(1u << c->most.caustic_bits)), 1.0)};
+    camera_part part = split_by(sums, best);
+    whole->variance += part.variance;
+    whole->cost += part.cost;
 }
 
 /* Writes the cost of the frame's camera samples divided by their variance, when all blocks have the best numbers.
