@@ -60,19 +60,25 @@ static rgb reflected_light(const transport *t, eye_worker *worker, const vertex 
     return rgb_scale(rgb_mul(reflected, transmittance), weight / pdf);
 }
 
+/* Samples a lamp that was picked with a probability, times the density of a guide's warp: the factor. */
+static lamp_light sample_picked(const transport *t, eye_worker *worker, const vertex *v, bsdf_lobes lobes,
+                                uint32_t lamp, float factor, vec2 u, int lamp_count, float scatter_count)
+{
+    light_sample sample;
+    if (!(factor > 0.0f) || !light_sample_from_point(t->s, &t->s->lights[lamp], vertex_position(v), u, &sample))
+        return (lamp_light){.radiance = rgb_gray(0.0f)};
+    return (lamp_light){reflected_light(t, worker, v, lobes, &sample, factor, lamp_count, scatter_count), lamp,
+                        sample.direction};
+}
+
 lamp_light direct_light_sample_lamp(const transport *t, eye_worker *worker, const vertex *v, bsdf_lobes lobes,
                                     float u_pick, vec2 u, int lamp_count, float scatter_count)
 {
-    const lamp_light none = {.radiance = rgb_gray(0.0f)};
     if (!t->has_lights)
-        return none;
+        return (lamp_light){.radiance = rgb_gray(0.0f)};
     float factor;
-    light_sample sample;
     uint32_t lamp = pick_lamp(t, vertex_position(v), vertex_light_normal(v, lobes), u_pick, &u, &factor);
-    if (!(factor > 0.0f) || !light_sample_from_point(t->s, &t->s->lights[lamp], vertex_position(v), u, &sample))
-        return none;
-    return (lamp_light){reflected_light(t, worker, v, lobes, &sample, factor, lamp_count, scatter_count), lamp,
-                        sample.direction};
+    return sample_picked(t, worker, v, lobes, lamp, factor, u, lamp_count, scatter_count);
 }
 
 /* With more lights that reach everywhere a sample of each would cost too much. */
@@ -103,8 +109,8 @@ rgb direct_light_sample_each(const transport *t, eye_worker *worker, const verte
     }
     vec3 from = vertex_position(v), normal = vertex_light_normal(v, lobes);
     uint32_t cell = direct_guide_find(t->direct_guide, from, normal);
-    light_sample sample;
     for (uint32_t i = 0; i < s->everywhere_count; i++) {
+        light_sample sample;
         uint32_t lamp = s->everywhere_lights[i];
         bool is_guided = rng_float(random) < EACH_GUIDED_SHARE && cell != DIRECT_GUIDE_NO_CELL;
         vec2 u = rng_vec2(random);
@@ -119,9 +125,7 @@ rgb direct_light_sample_each(const transport *t, eye_worker *worker, const verte
     float probability, u_pick = rng_float(random);
     vec2 u = rng_vec2(random);
     uint32_t lamp = light_tree_pick(s->light_tree, from, normal, u_pick, &probability);
-    if (probability > 0.0f && light_sample_from_point(s, &s->lights[lamp], from, u, &sample))
-        sum = rgb_add(sum, reflected_light(t, worker, v, lobes, &sample, probability, 1, scatter_count));
-    return sum;
+    return rgb_add(sum, sample_picked(t, worker, v, lobes, lamp, probability, u, 1, scatter_count).radiance);
 }
 
 /* Adds light to the group of its lamp, where groups are asked for. */
