@@ -22,6 +22,20 @@ static double dome_irradiance(void) { return (double)FIELD_FLUX.r * field_irradi
 /* Three standard deviations of the field, and half a percent for the blur. */
 static double field_bound(void) { return 0.005 + 3.0 * sqrt(8.0 / 3.0 / PHOTONS); }
 
+/* Casts the gather rays of a vertex that the eye meets first. Returns their cost. */
+static uint32_t gather_at(eye *e, const vertex *v, const sampler *where, int scatterings_left, uint32_t count,
+                          float throughput)
+{
+    gather_request request = {.from = v,
+                              .where = where,
+                              .is_first = true,
+                              .scatterings_left = scatterings_left,
+                              .count = count,
+                              .throughput = rgb_gray(throughput),
+                              .share = 1.0f};
+    return final_gather(&e->t, e->worker, &request);
+}
+
 static void take_gathered(eye *e, mean_sum *sum, bool is_first)
 {
     final_gather_resolve(&e->t, e->worker);
@@ -50,14 +64,7 @@ static void plate_under_a_dome(void **state)
         mean_sum sum = {0};
         for (uint32_t i = 0; i < GATHERS * RAYS / COUNTS[k]; i++) {
             sampler where = sampler_make(i, 3, 4, 0, 0);
-            gather_request request = {.from = &v,
-                                      .where = &where,
-                                      .is_first = true,
-                                      .scatterings_left = 100,
-                                      .count = COUNTS[k],
-                                      .throughput = rgb_gray(0.25f),
-                                      .share = 1.0f};
-            assert_true(final_gather(&e.t, e.worker, &request) >= COUNTS[k] * (uint32_t)EYE_COST_OF_RAY);
+            assert_true(gather_at(&e, &v, &where, 100, COUNTS[k], 0.25f) >= COUNTS[k] * (uint32_t)EYE_COST_OF_RAY);
             take_gathered(&e, &sum, true);
         }
         assert_mean(&sum, 0.25 * 0.8 * 0.5 * dome_irradiance() / PI, field_bound());
@@ -133,14 +140,7 @@ static void ray_asks_both_sides_of_a_cloth(void **state)
     double squares = 0.0, radiance = 0.8 * 0.3 * dome_irradiance() / PI;
     for (uint32_t i = 0; i < GATHERS * RAYS; i++) {
         sampler where = sampler_make(i, 3, 4, 0, 0);
-        gather_request request = {.from = &v,
-                                  .where = &where,
-                                  .is_first = true,
-                                  .scatterings_left = 100,
-                                  .count = 1,
-                                  .throughput = rgb_gray(1.0f),
-                                  .share = 1.0f};
-        final_gather(&e.t, e.worker, &request);
+        gather_at(&e, &v, &where, 100, 1, 1.0f);
         final_gather_resolve(&e.t, e.worker);
         double brought = (double)e.worker->batch->gathered[0].first.r;
         mean_add(&sum, brought);
@@ -166,14 +166,7 @@ static void bounces_in_a_shining_sphere(void **state)
         mean_sum sum = {0};
         for (uint32_t i = 0; i < GATHERS; i++) {
             sampler where = sampler_make(i, 3, 4, 0, 0);
-            gather_request request = {.from = &v,
-                                      .where = &where,
-                                      .is_first = true,
-                                      .scatterings_left = LEFT[k],
-                                      .count = RAYS,
-                                      .throughput = rgb_gray(1.0f),
-                                      .share = 1.0f};
-            final_gather(&e.t, e.worker, &request);
+            gather_at(&e, &v, &where, LEFT[k], RAYS, 1.0f);
             take_gathered(&e, &sum, true);
         }
         double expected = 2.0 * (0.25 - pow(0.5, LEFT[k] + 1)) / 0.5;
