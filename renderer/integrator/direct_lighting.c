@@ -60,7 +60,8 @@ static rgb reflected_light(const transport *t, eye_worker *worker, const vertex 
     return rgb_scale(rgb_mul(reflected, transmittance), weight / pdf);
 }
 
-/* Samples a lamp that was picked with a probability, times the density of a guide's warp: the factor. */
+/* Samples a lamp that was picked. factor: its probability, times the density of the guide's warp at u where there is
+ * one. */
 static lamp_light sample_picked(const transport *t, eye_worker *worker, const vertex *v, bsdf_lobes lobes,
                                 uint32_t lamp, float factor, vec2 u, int lamp_count, float scatter_count)
 {
