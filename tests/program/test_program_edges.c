@@ -1,7 +1,6 @@
-/* test_program_edges.c: with the photons of a picture of common size, where surfaces end: a thin table leg on a floor,
- * a corner of 10 degrees, a wall without thickness between a lit room and a dark one, a step of 1 mm. Estimates there
- * must neither lose light past the edge nor find the next room's. Flow: tests of the whole program. Threads: the
- * program's. */
+/* test_program_edges.c: where surfaces end: a thin table leg on a floor, a corner of 10 degrees, a wall without
+ * thickness between a lit room and a dark one, a step of 1 mm. Estimates there must neither lose light past the edge
+ * nor find the next room's. Flow: tests of the whole program. Threads: the program's. */
 #define _GNU_SOURCE
 #include "fixtures/program_agreement.h"
 
