@@ -163,6 +163,15 @@ static split_counts counts_at(double cost_per_variance, uint32_t further, const 
                           .lights = lights_of_ray(lights, further, c)};
 }
 
+/* Returns the share of camera samples that ask for caustics. */
+static double share_that_asks(uint32_t caustic_bits) { return 1.0 / (double)(1u << caustic_bits); }
+
+/* Returns camera_part_of where that share asks. */
+static camera_part camera_part_asking(const block_sums *sums, double share, double camera_rays)
+{
+    return camera_part_of(sums, 1.0 / share - 1.0, sums->cost_of_rest + sums->cost_of_caustic * share, camera_rays);
+}
+
 /* The numbers that a camera sample is split into, on average. */
 typedef struct mean_counts {
     double rays, lights, camera_rays; /* lights: of all camera rays */
@@ -173,14 +182,13 @@ static mean_counts mean_counts_of(split_counts counts)
 {
     const double camera_rays = (double)split_camera_rays(counts);
     return (mean_counts){(double)counts.rays, (double)counts.lights * camera_rays, camera_rays,
-                         1.0 / (double)(1u << counts.caustic_bits)};
+                         share_that_asks(counts.caustic_bits)};
 }
 
 /* Variance and cost of a camera sample that is split by these counts. */
 static camera_part split_by(const block_sums *sums, mean_counts counts)
 {
-    camera_part part = camera_part_of(sums, 1.0 / counts.caustics - 1.0,
-                                      sums->cost_of_rest + sums->cost_of_caustic * counts.caustics, counts.camera_rays);
+    camera_part part = camera_part_asking(sums, counts.caustics, counts.camera_rays);
     part.variance += sums->by_ray / counts.rays + sums->by_light / counts.lights;
     part.cost += sums->cost_of_ray * counts.rays + sums->cost_of_light * counts.lights;
     return part;
@@ -191,8 +199,7 @@ static split_counts best_with_one_ray(const block_sums *sums, const choice *c)
 {
     camera_part rest = camera_part_of(sums, -1.0, sums->cost_of_rest, 1.0);
     uint32_t bits = counts_at(cost_per_variance_of(rest), 0, sums, c).caustic_bits;
-    double asked = (double)(1u << bits); /* so many samples share an estimate of caustics */
-    rest = camera_part_of(sums, asked - 1.0, sums->cost_of_rest + sums->cost_of_caustic / asked, 1.0);
+    rest = camera_part_asking(sums, share_that_asks(bits), 1.0);
     split_counts counts = counts_at(cost_per_variance_of(rest), 0, sums, c);
     counts.caustic_bits = bits;
     return counts;
@@ -339,7 +346,7 @@ static void add_group(const block_sums *sums, double cost_per_variance, const ch
                             fmin(fmax(lights, fmax((double)c->least_lights, (double)c->least.lights * camera_rays)),
                                  (double)c->most.lights * camera_rays),
                         .camera_rays = camera_rays,
-                        .caustics = fmin(fmax(caustics, 1.0 / (double)(1u << c->most.caustic_bits)), 1.0)};
+                        .caustics = fmin(fmax(caustics, share_that_asks(c->most.caustic_bits)), 1.0)};
     camera_part part = split_by(sums, best);
     whole->variance += part.variance;
     whole->cost += part.cost;

@@ -5,7 +5,7 @@
 #include "fixtures/program_agreement.h"
 
 /* The photon map against the path tracer. So small a picture has 130,000 photons by default, whose discs of 50
- * blur the light below the table: this picture lacks 0.54 % of it, and 0.05 % with 3,000,000. */
+ * blur the shade below the table: that picture lacks 0.54 % of its light, and 0.05 % with 3,000,000. */
 static void compare(const char *name, agreement_bounds bounds)
 {
     char scene[512];
