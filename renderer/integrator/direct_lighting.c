@@ -183,28 +183,33 @@ rgb direct_light_escaped(const transport *t, vec3 from, vec3 normal, vec3 direct
     return sum;
 }
 
-/* Returns the variance of the samples' mean, by how they differ; 0 for a single one, of which it is not known. */
-static float variance_of_mean(float sum, float squares, int count)
-{
-    if (count < 2)
-        return 0.0f;
-    float n = (float)count;
-    return fmaxf(squares - sum * sum / n, 0.0f) / (n * (n - 1.0f));
-}
-
 /* Returns how many samples by scattering are taken on average. */
 static float mean_scatter_count(sample_counts counts) { return (float)counts.scatter * counts.scatter_probability; }
 
 /* The samples that one of the two ways of sampling has taken of a vertex's direct light. */
 typedef struct light_sums {
-    rgb sum;       /* of the samples */
-    float squares; /* of their means of the three colours */
+    rgb sum;    /* of the samples */
+    float half; /* of the first half of them, of the mean of the three colours */
 } light_sums;
 
-static void add_sample(light_sums *sums, rgb brought)
+/* number: the sample's, of so many. */
+static void add_sample(light_sums *sums, uint32_t number, uint32_t count, rgb brought)
 {
     sums->sum = rgb_add(sums->sum, brought);
-    sums->squares += rgb_mean(brought) * rgb_mean(brought);
+    if (number < count / 2)
+        sums->half += rgb_mean(brought);
+}
+
+/* Returns the variance of the samples' mean, by how their halves differ; 0 for a single one, of which it is not known.
+ * Each half is spread as evenly as all are, so that it tells how little is left to chance by that, which samples that
+ * are held against each other one by one do not. */
+static float variance_of_mean(const light_sums *sums, int count)
+{
+    if (count < 2)
+        return 0.0f;
+    float first = (float)(count / 2), second = (float)count - first;
+    float apart = sums->half / first - (rgb_mean(sums->sum) - sums->half) / second;
+    return apart * apart * first * second / ((float)count * (float)count);
 }
 
 /* Samples lamps. The sky's part, and that of groups where they are asked for, is added as a mean over the samples. */
@@ -219,7 +224,7 @@ static light_sums sample_lamps(const transport *t, eye_worker *worker, const ver
         vec2 u = sampler_2d_of(where, SAMPLE_LIGHT, path_vertex, count, i);
         lamp_light sample =
             direct_light_sample_lamp(t, worker, v, BSDF_GATHERED, u_pick, u, counts.light, mean_scatter_count(counts));
-        add_sample(&sums, sample.radiance);
+        add_sample(&sums, i, count, sample.radiance);
         if (rgb_is_black(sample.radiance))
             continue;
         const light *lamp = &t->s->lights[sample.lamp];
@@ -257,7 +262,7 @@ static light_sums sample_scattering(const transport *t, eye_worker *worker, cons
             rgb *of_group = light_group_sums_begin(&groups, by_group != NULL);
             rgb escaped = direct_light_escaped(t, from, normal, scattered.direction, scattered.pdf_solid_angle, against,
                                                of_group);
-            add_sample(&sums, rgb_mul(rgb_mul(escaped, met.transmittance), scattered.weight));
+            add_sample(&sums, i, count, rgb_mul(rgb_mul(escaped, met.transmittance), scattered.weight));
             rgb reflected = rgb_scale(rgb_mul(met.transmittance, scattered.weight), share);
             *in_out_sky = rgb_add(*in_out_sky, rgb_mul(escaped, reflected));
             for (int k = 0; of_group && k <= LIGHT_GROUPS_MAX; k++)
@@ -269,7 +274,7 @@ static light_sums sample_scattering(const transport *t, eye_worker *worker, cons
             continue;
         float weight = direct_light_scatter_weight(t, from, normal, &met, scattered.pdf_solid_angle, against);
         rgb brought = rgb_scale(rgb_mul(emitted, scattered.weight), weight);
-        add_sample(&sums, brought);
+        add_sample(&sums, i, count, brought);
         add_to_group(by_group, met.lamp, rgb_scale(brought, share));
     }
     return sums;
@@ -288,9 +293,9 @@ direct_light direct_light_gathered(const transport *t, eye_worker *worker, const
         direct.radiance = rgb_add(direct.radiance, rgb_scale(scattered.sum, 1.0f / mean_scatter_count(counts)));
     /* a single scattered sample stands for its own deviation */
     const float chance = counts.scatter_probability;
-    direct.variance =
-        variance_of_mean(rgb_mean(lamps.sum), lamps.squares, counts.light) +
-        (counts.scatter == 1 ? (1.0f - 0.5f * chance) * scattered.squares / (chance * chance)
-                             : variance_of_mean(rgb_mean(scattered.sum), scattered.squares, counts.scatter));
+    const float single = rgb_mean(scattered.sum);
+    direct.variance = variance_of_mean(&lamps, counts.light) +
+                      (counts.scatter == 1 ? (1.0f - 0.5f * chance) * single * single / (chance * chance)
+                                           : variance_of_mean(&scattered, counts.scatter));
     return direct;
 }

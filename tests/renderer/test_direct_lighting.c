@@ -38,6 +38,21 @@ static void ball(void **state)
     eye_reset(&e);
 }
 
+/* Returns the variance that a vertex tells of its light samples, over that of its light. */
+static double times_that_is_told(eye *e, const vertex *v, sample_counts counts)
+{
+    double sum = 0.0, squares = 0.0, told = 0.0;
+    for (uint32_t k = 0; k < SAMPLES; k++) {
+        sampler where = sampler_make(k, 3, 4, 0, 0);
+        direct_light direct = direct_light_gathered(&e->t, e->worker, v, &where, 0, counts, NULL);
+        double value = (double)rgb_mean(direct.radiance);
+        sum += value / SAMPLES;
+        squares += value * value / SAMPLES;
+        told += (double)direct.variance / SAMPLES;
+    }
+    return told / (squares - sum * sum);
+}
+
 /* The variance that a vertex tells of its light samples is not less than that of its light. It may be ten times as
  * large: a lone sample by scattering stands for its own deviation, and those towards lamps are spread evenly. */
 static void variance_is_told(void **state)
@@ -49,18 +64,29 @@ static void variance_is_told(void **state)
                        " Shape \"sphere\" \"float radius\" 1.8 AttributeEnd");
     vertex v = eye_meet(&e, (vec3){0.1f, 0.0f, 0.1f}, (vec3){0.0f, 0.0f, -1.0f});
     for (size_t i = 0; i < sizeof COUNTS / sizeof *COUNTS; i++) {
-        double sum = 0.0, squares = 0.0, told = 0.0;
-        for (uint32_t k = 0; k < SAMPLES; k++) {
-            sampler where = sampler_make(k, 3, 4, 0, 0);
-            direct_light direct = direct_light_gathered(&e.t, e.worker, &v, &where, 0, COUNTS[i], NULL);
-            double value = (double)rgb_mean(direct.radiance);
-            sum += value / SAMPLES;
-            squares += value * value / SAMPLES;
-            told += (double)direct.variance / SAMPLES;
-        }
-        double times = told / (squares - sum * sum);
+        double times = times_that_is_told(&e, &v, COUNTS[i]);
         if (times < 1.0 || times > 12.0)
             fail_msg("row %zu tells %g times the variance", i, times);
+    }
+    eye_reset(&e);
+}
+
+/* A large lamp that is near: samples that are spread evenly over it differ by much more than their mean does, and would
+ * each by itself tell twenty times the variance. Their halves tell at most nine times of it, since each half is spread
+ * evenly, too. */
+static void evenly_spread_samples_tell_little_variance(void **state)
+{
+    (void)state;
+    static const sample_counts COUNTS[] = {{4, 0, 1}, {8, 0, 1}, {16, 0, 1}};
+    eye e;
+    eye_init(&e, FLOOR "AttributeBegin Translate 0 0 2 AreaLightSource \"diffuse\" \"rgb L\" [1 10 1]"
+                       " Shape \"sphere\" \"float radius\" 1.8 AttributeEnd");
+    vertex v = eye_meet(&e, (vec3){0.1f, 0.0f, 0.1f}, (vec3){0.0f, 0.0f, -1.0f});
+    for (size_t i = 0; i < sizeof COUNTS / sizeof *COUNTS; i++) {
+        double times = times_that_is_told(&e, &v, COUNTS[i]);
+        print_message("%d samples tell %.2f times the variance\n", COUNTS[i].light, times);
+        if (times < 0.8 || times > 9.0)
+            fail_msg("%d samples tell %g times the variance", COUNTS[i].light, times);
     }
     eye_reset(&e);
 }
@@ -221,6 +247,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(ball),
                                        cmocka_unit_test(variance_is_told),
+                                       cmocka_unit_test(evenly_spread_samples_tell_little_variance),
                                        cmocka_unit_test(sky),
                                        cmocka_unit_test(lights_without_extent),
                                        cmocka_unit_test(nothing_from_behind),
