@@ -433,13 +433,6 @@ void irradiance_cache_retry(irradiance_cache *cache, const run_context *run, irr
     answer_request(cache, word, worker_index, request);
 }
 
-rgb irradiance_cache_estimate(irradiance_cache *cache, vec3 position, vec3 normal, unsigned worker_index)
-{
-    rgb irradiance;
-    estimate_at_point(cache, position, normal, worker_index, &irradiance);
-    return irradiance;
-}
-
 void irradiance_cache_look(const irradiance_cache *cache, uint64_t *out_requests, uint64_t *out_computed)
 {
     *out_requests = *out_computed = 0;

@@ -111,9 +111,6 @@ void irradiance_cache_retry(irradiance_cache *cache, const run_context *run, irr
 void irradiance_cache_get_many(irradiance_cache *cache, run_context *run, const irradiance_query *queries,
                                uint32_t count, unsigned worker_index, rgb *out_irradiance, bool *out_holds);
 
-/* Returns an estimate at the point itself, which is not kept, even where it does not hold. W/m^2. */
-rgb irradiance_cache_estimate(irradiance_cache *cache, vec3 position, vec3 normal, unsigned worker_index);
-
 /* Returns the sum of all workers' counters. */
 irradiance_counters irradiance_cache_counters(const irradiance_cache *cache);
 

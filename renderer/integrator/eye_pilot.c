@@ -2,9 +2,9 @@
 #include "integrator/eye_pilot.h"
 
 #include "integrator/direct_lighting.h"
+#include "integrator/eye_path.h"
 #include "integrator/gather_path.h"
 #include "integrator/pilot_lists.h"
-#include "integrator/shading.h"
 #include "parallel_for.h"
 #include "rays/transmittance.h"
 #include "status.h"
@@ -23,6 +23,8 @@ enum { STREAM_LAMPS = 1 };
 /* Sampler keys apart from the picture's own. */
 /* All points that a path finds count alike, so that roulette alone makes them as frequent as its light is bright. */
 static const eye_roulette ROULETTE = {4, 1.0f};
+/* Below this throughput a surface itself is noted in place of the ends of its gather rays, of which it sends few. */
+static const float FAINT = 0.03f;
 
 static const uint64_t PILOT_SEED = 0x70696c6f74u;
 
@@ -214,7 +216,7 @@ static bool note_vertex(const pilot_job *job, eye_worker *worker, const vertex *
         note_enclosure(t, worker, v, where, path->vertex, out);
         return true;
     }
-    if (path->vertex > 0 && rgb_max(path->throughput) < SHADING_LOW_CONTRIBUTION) {
+    if (path->vertex > 0 && rgb_max(path->throughput) < FAINT) {
         add_sides(t, v, out, PILOT_GATHERED);
     } else {
         add_sides(t, v, out, PILOT_SEEN);

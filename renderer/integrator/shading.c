@@ -24,8 +24,7 @@ static const float WAYS_VARIANCE = 1.0f / 8192.0f;
 /* The parts of the light that a diffuse vertex sends on, but for gathered light, which the sample gets later. */
 typedef struct diffuse_light {
     rgb direct, caustic;
-    rgb estimated; /* all of the light at once */
-    rgb sky;       /* the part of the direct light that comes from infinite lights */
+    rgb sky; /* the part of the direct light that comes from infinite lights */
 } diffuse_light;
 
 /* Returns the exponent of the power of two that is nearest by ratio, at least 0. */
@@ -121,37 +120,17 @@ static rgb caustic_radiance(const transport *t, eye_worker *worker, const vertex
     return caustic;
 }
 
-/* Returns all light that a diffuse vertex sends on, by the photon map's estimate there. */
-static rgb estimated_radiance(const transport *t, eye_worker *worker, const vertex *v)
-{
-    map_point at = vertex_map_point(t->s, v);
-    rgb transmitted = bsdf_gathered_transmission(&v->scattering);
-    rgb all = rgb_mul(bsdf_gathered_reflection(&v->scattering),
-                      irradiance_cache_estimate(t->cache, at.position, at.facing_normal, worker->index));
-    if (!rgb_is_black(transmitted)) {
-        rgb behind = irradiance_cache_estimate(t->cache, at.position, vec3_negate(at.facing_normal), worker->index);
-        all = rgb_add(all, rgb_mul(transmitted, behind));
-    }
-    return rgb_scale(all, AG_INV_PI);
-}
-
 /* Finds the light that a diffuse vertex sends on, and notes in the sample what gather rays, light samples and caustics
- * cost, and how noisy the latter two are. Where the vertex contributes little, all of it is the photon map's estimate
- * there. */
+ * cost, and how noisy the latter two are. */
 static diffuse_light diffuse_radiance(const transport *t, eye_worker *worker, const vertex *v,
                                       const camera_sample *from, const eye_path *path, eye_sample *sample,
                                       rgb *by_group)
 {
     int scatterings_left = eye_path_scatterings_left(t, path);
-    bool wants_all = transport_wants_all_light(t);
-    diffuse_light sum = {rgb_gray(0.0f), rgb_gray(0.0f), rgb_gray(0.0f), rgb_gray(0.0f)};
+    diffuse_light sum = {rgb_gray(0.0f), rgb_gray(0.0f), rgb_gray(0.0f)};
     if (scatterings_left < 1)
         return sum;
-    if (wants_all && path->scatterings > 0 && rgb_max(path->throughput) < SHADING_LOW_CONTRIBUTION) {
-        sum.estimated = estimated_radiance(t, worker, v);
-        return sum;
-    }
-    if (wants_all) {
+    if (transport_wants_all_light(t)) {
         const direct_light direct = direct_radiance(t, worker, v, from, path, sample, by_group);
         sum.direct = direct.radiance;
         sum.sky = direct.from_sky;
@@ -173,23 +152,20 @@ static void add_diffuse(const transport *t, eye_sample *sample, const diffuse_li
     bool is_first = scatterings == 0;
     float share = path->share, shared = eye_path_shared(path);
     rgb throughput = rgb_scale(path->throughput, share), throughput_shared = rgb_scale(path->throughput, shared);
-    rgb direct = rgb_mul(throughput_shared, diffuse->direct), caustic = rgb_mul(throughput, diffuse->caustic),
-        estimated = rgb_mul(throughput_shared, diffuse->estimated);
+    rgb direct = rgb_mul(throughput_shared, diffuse->direct), caustic = rgb_mul(throughput, diffuse->caustic);
     float kept_direct = eye_sample_bound(sample, shared, scatterings + 1, direct);
     direct = rgb_scale(direct, kept_direct);
     caustic = rgb_scale(caustic, eye_sample_bound(sample, share, scatterings + 2, caustic));
-    estimated = rgb_scale(estimated, eye_sample_bound(sample, shared, scatterings + 2, estimated));
-    sample->radiance = rgb_add(sample->radiance, rgb_add(rgb_add(direct, caustic), estimated));
+    sample->radiance = rgb_add(sample->radiance, rgb_add(direct, caustic));
     sample->own += rgb_mean(caustic);
     eye_sample_add_part(sample, is_first ? PART_DIRECT : PART_SPECULAR, direct);
     eye_sample_add_part(sample, is_first ? PART_CAUSTIC : PART_SPECULAR, caustic);
-    eye_sample_add_part(sample, is_first ? PART_INDIRECT : PART_SPECULAR, estimated);
     if (is_first && sample->layers)
         sample->layers->sky =
             rgb_add(sample->layers->sky, rgb_scale(rgb_mul(throughput_shared, diffuse->sky), kept_direct));
     if (by_group) {
         eye_sample_add_groups(sample, by_group, rgb_scale(throughput_shared, kept_direct));
-        eye_sample_add_group(sample, (uint32_t)t->layout->group_count, rgb_add(caustic, estimated));
+        eye_sample_add_group(sample, (uint32_t)t->layout->group_count, caustic);
     }
 }
 

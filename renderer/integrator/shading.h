@@ -7,10 +7,6 @@
 
 #include "integrator/eye_path.h"
 
-/* Below this throughput a diffuse vertex is shown by the k-nearest estimate at it instead of being gathered (Jensen
- * 2001, 8.2: an approximate evaluation where the contribution is low). */
-static const float SHADING_LOW_CONTRIBUTION = 0.03f;
-
 /* Eye paths are of traced lobes alone, few and short, and a lamp that one meets behind glass may be a thousand times as
  * bright as all around: a faint path that roulette had made as strong as it began would show it as a speck. */
 static const eye_roulette SHADING_ROULETTE = {4, 1.0f / 16.0f};

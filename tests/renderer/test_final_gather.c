@@ -100,16 +100,19 @@ static void wall_of_a_sphere(void **state)
     eye_reset(&e);
 }
 
-/* In a mirror that reflects all, the same light is of the second kind. In a field that is the same all over it changes
- * nothing for the gather rays that meet it. */
-static void wall_in_a_mirror(void **state)
+/* In a mirror the same light is of the second kind, however little the mirror reflects. It takes what it does not
+ * reflect of the gather rays that meet it. */
+static void check_wall_in_a_mirror(double reflectance)
 {
-    (void)state;
+    enum { RADIUS_IN_HUNDREDTHS = 12 };
+    const double square = 1e-4 * RADIUS_IN_HUNDREDTHS * RADIUS_IN_HUNDREDTHS, covered = square / (1.0 + square);
+    char text[400];
+    snprintf(text, sizeof text,
+             DOME "Material \"conductor\" \"float roughness\" 0 \"rgb reflectance\" [%g %g %g]"
+                  " ReverseOrientation Shape \"disk\" \"float radius\" 0.%d",
+             reflectance, reflectance, reflectance, RADIUS_IN_HUNDREDTHS);
     eye e;
-    eye_init_with_photons(&e,
-                          DOME "Material \"conductor\" \"float roughness\" 0 \"rgb reflectance\" [1 1 1]"
-                               " ReverseOrientation Shape \"disk\" \"float radius\" 0.2",
-                          PHOTONS, NEAREST);
+    eye_init_with_photons(&e, text, PHOTONS, NEAREST);
     e.t.ray_bits = sampler_bits(RAYS);
     mean_sum sum = {0};
     for (uint32_t i = 0; i < SAMPLES; i++) {
@@ -120,8 +123,16 @@ static void wall_in_a_mirror(void **state)
         shading_radiance(&e.t, e.worker, &from, &s);
         take_gathered(&e, &sum, false);
     }
-    assert_mean(&sum, 0.25 * dome_irradiance() / PI, field_bound());
+    assert_mean(&sum, reflectance * (1.0 - (1.0 - reflectance) * covered) * 0.25 * dome_irradiance() / PI,
+                field_bound());
     eye_reset(&e);
+}
+
+static void wall_in_a_mirror(void **state)
+{
+    (void)state;
+    check_wall_in_a_mirror(1.0);
+    check_wall_in_a_mirror(0.02);
 }
 
 /* A dome of cloth, which lets 0.2 through, and no light comes from outside: each single ray brings what is inside, with
