@@ -20,12 +20,12 @@ enum { POINTS_PER_IMPORTON = 2, IMPORTON_SCATTERINGS_MAX = 8 };
 enum { LIT_PATHS = 12288, ENCLOSURE_PATHS = 2048 };
 /* The stream of the lamps that importons look for. */
 enum { STREAM_LAMPS = 1 };
-/* Sampler keys apart from the picture's own. */
 /* All points that a path finds count alike, so that roulette alone makes them as frequent as its light is bright. */
 static const eye_roulette ROULETTE = {4, 1.0f};
 /* Below this throughput a surface itself is noted in place of the ends of its gather rays, of which it sends few. */
 static const float FAINT = 0.03f;
 
+/* Sampler keys apart from the picture's own. */
 static const uint64_t PILOT_SEED = 0x70696c6f74u;
 
 static void add_point(pilot_row *row, pilot_list which, vec3 position, vec3 normal)

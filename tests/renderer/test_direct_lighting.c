@@ -53,42 +53,37 @@ static double times_that_is_told(eye *e, const vertex *v, sample_counts counts)
     return told / (squares - sum * sum);
 }
 
+/* A floor under a large lamp that is near: what each row of counts tells is within [least, most] times what is true. */
+static void check_variance_told(const sample_counts *counts, size_t rows, double least, double most)
+{
+    eye e;
+    eye_init(&e, FLOOR "AttributeBegin Translate 0 0 2 AreaLightSource \"diffuse\" \"rgb L\" [1 10 1]"
+                       " Shape \"sphere\" \"float radius\" 1.8 AttributeEnd");
+    vertex v = eye_meet(&e, (vec3){0.1f, 0.0f, 0.1f}, (vec3){0.0f, 0.0f, -1.0f});
+    for (size_t i = 0; i < rows; i++) {
+        double times = times_that_is_told(&e, &v, counts[i]);
+        if (times < least || times > most)
+            fail_msg("row %zu tells %g times the variance", i, times);
+    }
+    eye_reset(&e);
+}
+
 /* The variance that a vertex tells of its light samples is not less than that of its light. It may be ten times as
  * large: a lone sample by scattering stands for its own deviation, and those towards lamps are spread evenly. */
 static void variance_is_told(void **state)
 {
     (void)state;
     static const sample_counts COUNTS[] = {{2, 1, 0.25f}, {2, 1, 0.5f}, {4, 1, 1}, {4, 3, 1}};
-    eye e;
-    eye_init(&e, FLOOR "AttributeBegin Translate 0 0 2 AreaLightSource \"diffuse\" \"rgb L\" [1 10 1]"
-                       " Shape \"sphere\" \"float radius\" 1.8 AttributeEnd");
-    vertex v = eye_meet(&e, (vec3){0.1f, 0.0f, 0.1f}, (vec3){0.0f, 0.0f, -1.0f});
-    for (size_t i = 0; i < sizeof COUNTS / sizeof *COUNTS; i++) {
-        double times = times_that_is_told(&e, &v, COUNTS[i]);
-        if (times < 1.0 || times > 12.0)
-            fail_msg("row %zu tells %g times the variance", i, times);
-    }
-    eye_reset(&e);
+    check_variance_told(COUNTS, sizeof COUNTS / sizeof *COUNTS, 1.0, 12.0);
 }
 
-/* A large lamp that is near: samples that are spread evenly over it differ by much more than their mean does, and would
- * each by itself tell twenty times the variance. Their halves tell at most nine times of it, since each half is spread
- * evenly, too. */
+/* Samples that are spread evenly over the lamp differ by much more than their mean does, and would each by itself tell
+ * twenty times the variance. Their halves tell at most nine times of it, since each half is spread evenly, too. */
 static void evenly_spread_samples_tell_little_variance(void **state)
 {
     (void)state;
     static const sample_counts COUNTS[] = {{4, 0, 1}, {8, 0, 1}, {16, 0, 1}};
-    eye e;
-    eye_init(&e, FLOOR "AttributeBegin Translate 0 0 2 AreaLightSource \"diffuse\" \"rgb L\" [1 10 1]"
-                       " Shape \"sphere\" \"float radius\" 1.8 AttributeEnd");
-    vertex v = eye_meet(&e, (vec3){0.1f, 0.0f, 0.1f}, (vec3){0.0f, 0.0f, -1.0f});
-    for (size_t i = 0; i < sizeof COUNTS / sizeof *COUNTS; i++) {
-        double times = times_that_is_told(&e, &v, COUNTS[i]);
-        print_message("%d samples tell %.2f times the variance\n", COUNTS[i].light, times);
-        if (times < 0.8 || times > 9.0)
-            fail_msg("%d samples tell %g times the variance", COUNTS[i].light, times);
-    }
-    eye_reset(&e);
+    check_variance_told(COUNTS, sizeof COUNTS / sizeof *COUNTS, 0.8, 9.0);
 }
 
 /* A sky that is the same all over: E = pi L. All of it is noted as the sky's. */

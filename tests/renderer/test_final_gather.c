@@ -104,13 +104,12 @@ static void wall_of_a_sphere(void **state)
  * reflect of the gather rays that meet it. */
 static void check_wall_in_a_mirror(double reflectance)
 {
-    enum { RADIUS_IN_HUNDREDTHS = 12 };
-    const double square = 1e-4 * RADIUS_IN_HUNDREDTHS * RADIUS_IN_HUNDREDTHS, covered = square / (1.0 + square);
+    const double covered = 0.2 * 0.2 / (1.0 + 0.2 * 0.2); /* the mirror's share of them */
     char text[400];
     snprintf(text, sizeof text,
              DOME "Material \"conductor\" \"float roughness\" 0 \"rgb reflectance\" [%g %g %g]"
-                  " ReverseOrientation Shape \"disk\" \"float radius\" 0.%d",
-             reflectance, reflectance, reflectance, RADIUS_IN_HUNDREDTHS);
+                  " ReverseOrientation Shape \"disk\" \"float radius\" 0.2",
+             reflectance, reflectance, reflectance);
     eye e;
     eye_init_with_photons(&e, text, PHOTONS, NEAREST);
     e.t.ray_bits = sampler_bits(RAYS);
