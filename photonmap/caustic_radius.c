@@ -20,6 +20,17 @@ static float irradiance_at(const photon_map *global, vec3 position, vec3 normal,
     return rgb_max(irradiance_estimate(global, position, normal, scratch));
 }
 
+double caustic_flux_each(const photon_set *caustic)
+{
+    double flux = 0.0, squares = 0.0;
+    for (uint32_t i = 0; i < caustic->count; i++) {
+        double stored = (double)flux_largest(caustic->photons[i].flux);
+        flux += stored;
+        squares += stored * stored;
+    }
+    return flux > 0.0 ? squares / flux : 0.0;
+}
+
 ag_status caustic_radius_find(const photon_map *global, const photon_set *caustic, float *out_radius)
 {
     *out_radius = global->max_radius;
@@ -29,14 +40,7 @@ ag_status caustic_radius_find(const photon_map *global, const photon_set *causti
     uint32_t count;
     AG_TRY(photon_survey(global, irradiance_at, found, &count));
     const float dim = found[count / DIM_ONE_IN];
-    double flux = 0.0, squares = 0.0;
-    for (uint32_t i = 0; i < caustic->count; i++) {
-        double stored = (double)flux_largest(caustic->photons[i].flux);
-        flux += stored;
-        squares += stored * stored;
-    }
-    /* the mean weighted by flux: the strongest photons bring most of the light, and make the spots */
-    double each = flux > 0.0 ? squares / (flux * (double)caustic->emitted_paths) : 0.0;
+    double each = caustic_flux_each(caustic) / (double)caustic->emitted_paths;
     float radius = (float)sqrt((double)global->nearest * each * (double)DIMMER / ((double)AG_PI * (double)dim));
     if (radius > 0.0f && radius < *out_radius)
         *out_radius = radius;

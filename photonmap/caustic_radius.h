@@ -13,6 +13,10 @@
  * where either map is empty or the dim parts are black; 0 where the global map has none. Errors: AG_ERROR_MEMORY. */
 ag_status caustic_radius_find(const photon_map *global, const photon_set *caustic, float *out_radius);
 
+/* Returns the mean of the photons' flux, each of the largest channel and weighted by itself, as it is stored: the
+ * strongest photons bring most of the light, and make the spots. 0 where there is none. */
+double caustic_flux_each(const photon_set *caustic);
+
 /* Returns the least area, m^2, on which the photons of an estimate of that map count. Where the map's largest radius is
  * that of caustic_radius_find, and no other bound's, a photon of the mean flux, weighted by flux, is as bright there as
  * the dim parts of the scene. */

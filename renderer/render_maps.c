@@ -9,6 +9,7 @@
 #include "rays/transmittance.h"
 #include "settings_table.h"
 #include "status.h"
+#include "strong_photons.h"
 
 #include <stdlib.h>
 
@@ -139,6 +140,7 @@ static ag_status build_maps(ag_context *context, const scene *s, const ag_render
     AG_TRY(photon_map_create(&context->run, global, &map_settings, 0.0, 0.7, out_global));
     /* caustics gather in spots: how many of their photons there are does not tell how far apart they lie */
     AG_TRY(caustic_radius_find(out_global, caustic, &map_settings.radius_bound));
+    AG_TRY(strong_photons_divide(s, map_settings.radius_bound, caustic));
     map_settings.irradiance_fraction = 1.0f;
     map_settings.is_steady = false;
     return photon_map_create(&context->run, caustic, &map_settings, 0.7, 1.0, out_caustic);
