@@ -138,8 +138,7 @@ static void a_spot_becomes_a_blur(void **state)
 typedef struct ground_case {
     const char *name, *world;
     vec3 at, normal;
-    float least_spread; /* the share of the parts that lie elsewhere than the photon did, at least; */
-    float most_spread;  /* and at most */
+    float least_spread, most_spread; /* bounds of the share of the parts that lie elsewhere than the photon did */
     bool (*is_on)(vec3 position, vec3 normal);
 } ground_case;
 
