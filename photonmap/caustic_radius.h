@@ -18,8 +18,8 @@ ag_status caustic_radius_find(const photon_map *global, const photon_set *causti
 double caustic_flux_each(const photon_set *caustic);
 
 /* Returns the least area, m^2, on which the photons of an estimate of that map count. Where the map's largest radius is
- * that of caustic_radius_find, and no other bound's, a photon of the mean flux, weighted by flux, is as bright there as
- * the dim parts of the scene. */
+ * that of caustic_radius_find, and no other bound's, a photon of the mean flux, weighted by flux, that the map's
+ * photons had when that radius was found is as bright there as the dim parts of the scene. */
 double caustic_least_area(const photon_map *caustic);
 
 #endif

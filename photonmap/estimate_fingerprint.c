@@ -6,6 +6,7 @@
 #include "fingerprint_scene.h"
 #include "onward_ways.h"
 #include "status.h"
+#include "strong_photons.h"
 
 #include <stdlib.h>
 
@@ -13,6 +14,10 @@ enum { PHOTONS = 4096, PHOTONS_OF_FLOOR = 1536, ESTIMATE_EVERY = 8 };
 /* Caustic photons of several fluxes, so faint that no other bound decides how far their estimates reach. */
 enum { CAUSTIC_PHOTONS = 16 };
 static const float CAUSTIC_FLUX = 1e-4f;
+/* Of as many photons, along a line from the floor's centre, one is divided. Lengths are shares of the floor's radius.
+ */
+enum { DIVIDED = 5 };
+static const float DIVIDED_FLUX = 100.0f, DIVIDED_FROM_CENTER = 0.9f, DIVIDED_RADIUS = 0.05f;
 /* Estimates of few photons and of many go by other bounds. */
 static const uint32_t NEAREST[] = {20, 96};
 /* Of the photons of a steady map, which keep irradiances. */
@@ -202,6 +207,26 @@ static ag_status add_caustic_radius(const photon_map *global, hash128 *in_out_ha
     return AG_OK;
 }
 
+/* Adds a set of photons on the floor, of which one is divided because it is far stronger than the others. */
+static ag_status add_divided(const run_context *run, const scene *surfaces, const fingerprint_disc *floor,
+                             hash128 *in_out_hash)
+{
+    photon_set set = {.photons = photon_records_create(CAUSTIC_PHOTONS), .count = CAUSTIC_PHOTONS, .emitted_paths = 1};
+    if (!set.photons)
+        return AG_ERROR_MEMORY;
+    for (uint32_t i = 0; i < CAUSTIC_PHOTONS; i++) {
+        float along = DIVIDED_FROM_CENTER * (float)i / (float)CAUSTIC_PHOTONS;
+        set.photons[i] = (photon){.normal = direction_encode(floor->axes.z),
+                                  .direction = arrival_encode(vec3_negate(floor->axes.z), false),
+                                  .flux = flux_encode(rgb_gray(i == DIVIDED ? DIVIDED_FLUX : 1.0f), i)};
+        photon_set_position(&set.photons[i], vec3_add_scaled(floor->center, floor->axes.x, along * floor->radius));
+    }
+    ag_status status = strong_photons_divide(surfaces, run, DIVIDED_RADIUS * floor->radius, &set);
+    hash128_add(in_out_hash, set.photons, set.count * sizeof *set.photons);
+    photon_set_reset(&set);
+    return status;
+}
+
 static ag_status add_map(run_context *run, const scene *surfaces, const fingerprint_disc discs[FINGERPRINT_DISCS],
                          uint32_t nearest, bool is_steady, irradiance_estimate_fn *find, hash128 *in_out_hash)
 {
@@ -235,6 +260,8 @@ ag_status estimate_fingerprint(const run_context *run, const char *isa, photon_t
             status = add_map(&quiet, surfaces, discs, NEAREST[i], false, find, &hash);
         if (status == AG_OK)
             status = add_map(&quiet, surfaces, discs, NEAREST[0], true, find, &hash);
+        if (status == AG_OK)
+            status = add_divided(&quiet, surfaces, &discs[0], &hash);
         scene_destroy(surfaces);
     }
     run_context_reset(&quiet);

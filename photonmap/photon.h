@@ -60,6 +60,15 @@ static inline uint32_t shared_mantissas(rgb value, int exponent, uint64_t bits)
     return (r > 255 ? 255 : r) << 16 | (g > 255 ? 255 : g) << 8 | (b > 255 ? 255 : b);
 }
 
+static inline vec3 photon_position(const photon *p) { return (vec3){p->position[0], p->position[1], p->position[2]}; }
+
+static inline void photon_set_position(photon *p, vec3 position)
+{
+    p->position[0] = position.x;
+    p->position[1] = position.y;
+    p->position[2] = position.z;
+}
+
 /* --- flux: exponent in the top byte, biased by 128 --- */
 
 #define FLUX_EXPONENT_MIN (-128)

@@ -63,18 +63,27 @@ static int steady_exponent(int exponent)
     return below > 0 ? exponent - below + STEADY_EXPONENTS : exponent;
 }
 
+/* The radius of an estimate's disc, if the photons were spread evenly over the scene's area. */
+static float even_radius(const photon_map_settings *settings, uint32_t count)
+{
+    float density = settings->surface_area > 0.0f ? (float)count / settings->surface_area : 0.0f;
+    float radius = density > 0.0f ? sqrtf((float)settings->nearest / (AG_PI * density)) : 0.0f;
+    return settings->is_steady ? quarter_octave_nearest(radius) : radius;
+}
+
+float photon_map_largest_radius(const photon_map_settings *settings, uint32_t count)
+{
+    if (settings->max_radius > 0.0f)
+        return settings->max_radius;
+    float radius = RADIUS_FACTOR * even_radius(settings, count);
+    return settings->radius_bound > 0.0f ? fminf(radius, settings->radius_bound) : radius;
+}
+
 /* Sets the radii that follow from the settings, and from the density of photons on the scene's area. */
 static void set_radii(photon_map *map, const photon_map_settings *settings)
 {
-    float density = settings->surface_area > 0.0f ? (float)map->set.count / settings->surface_area : 0.0f;
-    map->mean_radius = density > 0.0f ? sqrtf((float)map->nearest / (AG_PI * density)) : 0.0f;
-    if (map->is_steady)
-        map->mean_radius = quarter_octave_nearest(map->mean_radius);
-    map->max_radius = settings->max_radius > 0.0f ? settings->max_radius : RADIUS_FACTOR * map->mean_radius;
-    if (settings->max_radius == 0.0f && settings->radius_bound > 0.0f)
-        map->max_radius = fminf(map->max_radius, settings->radius_bound);
-    if (map->mean_radius > map->max_radius)
-        map->mean_radius = map->max_radius;
+    map->max_radius = photon_map_largest_radius(settings, map->set.count);
+    map->mean_radius = fminf(even_radius(settings, map->set.count), map->max_radius);
 }
 
 /* Builds the tree from the set's records, which become the blocks; and what estimates and lookups need of it. */

@@ -48,6 +48,10 @@ typedef struct photon_map {
                        of its estimate (irradiance_estimate_find_reach); 0: not known */
 } photon_map;
 
+/* Returns the largest radius of the estimates of a map of so many photons, scene units, as far as the settings alone
+ * bound it. */
+float photon_map_largest_radius(const photon_map_settings *settings, uint32_t count);
+
 /* Builds a map from the set's photons, which it takes over, and frees on failure. A map without photons is valid: its
  * irradiance is 0 everywhere. progress: of AG_PHASE_MAP. Errors: AG_ERROR_MEMORY, AG_CANCELLED. */
 ag_status photon_map_create(run_context *run, photon_set *set, const photon_map_settings *settings,

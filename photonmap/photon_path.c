@@ -102,9 +102,7 @@ static void append_photon(photon_tracer *t, const photon_path *path, const surfa
     if (!reserve_photon(out))
         return;
     photon *p = &out->photons[out->count++];
-    p->position[0] = rest->position.x;
-    p->position[1] = rest->position.y;
-    p->position[2] = rest->position.z;
+    photon_set_position(p, rest->position);
     p->flux = flux_encode(flux, key);
     p->direction = arrival_encode(path->ray.direction, path->is_diffuse);
     p->normal = direction_encode(rest->geometric_normal);

@@ -6,139 +6,162 @@
 #include "photon_map.h"
 #include "rays/transmittance.h"
 #include "status.h"
+#include "surface_region.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-/* Rays along the surface begin at this share of the radius above it: lower things are no wall. */
-static const float LIFT = 1.0f / 32.0f;
-/* The point from which parts' places are looked at is at most so far up as the parts lie out, and in a gap so far up as
- * this share of it. */
+/* The places of parts are looked for from a point above the photon. It is as high as the parts lie out; below a ceiling
+ * that is lower it is at this share of the ceiling's height. */
 static const float GAP_SHARE = 0.5f;
-/* A place that is higher or lower than this share of its distance is on another surface. */
-static const float STEEPEST = 0.5f;
 /* Neighbouring points of a spiral are this part of a turn apart, by which they lie evenly in the disc (Vogel, "A Better
  * Way to Construct the Sunflower Head", 1979). */
 static const float GOLDEN_TURN = 0.381966f;
 
-/* The surface that a strong photon lies on, and the point above it from which its parts' places are looked at. */
+/* The surface that a strong photon lies on, and the point above it from which places of its parts are looked for. */
 typedef struct photon_ground {
-    vec3 position, normal; /* on the side of the photon's arrival */
+    vec3 position, normal; /* unit, on the side of the photon's arrival */
     uint32_t shape, instance;
     vec3 above;
+    float reach; /* how far from the photon its parts may lie, scene units */
 } photon_ground;
 
-static bool find_surface(const scene *s, vec3 origin, vec3 direction, float farthest, surface_hit *out_hit)
-{
-    scene_ray ray = scene_ray_make(origin, direction);
-    ray.alpha_rule = RAY_MEETS_ALPHA;
-    return scene_find_surface(s, ray, farthest, out_hit);
-}
+typedef struct divider {
+    const scene *s;
+    float radius;
+    double each; /* the mean flux, weighted by flux */
+    uint64_t rays;
+} divider;
 
-/* reach: how far from the photon its parts may lie. Returns false where the surface is not found. */
-static bool find_ground(const scene *s, const photon *p, float radius, float reach, photon_ground *out)
+/* Returns false where the photon's surface is not found. */
+static bool find_ground(divider *d, const photon *p, photon_ground *out)
 {
     surface_hit foot, over;
-    vec3 position = {p->position[0], p->position[1], p->position[2]}, normal = direction_decode(p->normal);
-    float lift = radius * LIFT;
-    vec3 low = vec3_add_scaled(position, normal, lift);
-    if (!find_surface(s, low, vec3_negate(normal), 2.0f * lift, &foot))
+    float lift, reach = d->radius * sqrtf((float)((double)flux_largest(p->flux) / (d->each * STRONG_PHOTON_RATIO)));
+    const vec3 position = photon_position(p), arrived = direction_decode(p->normal);
+    if (!surface_region_find_foot(d->s, position, arrived, d->radius, &d->rays, &foot, &lift))
         return false;
-    normal = vec3_face_forward(foot.geometric_normal, normal);
-    bool is_gap = find_surface(s, low, normal, reach / GAP_SHARE, &over);
+    const vec3 normal = vec3_face_forward(foot.geometric_normal, arrived);
+    const scene_ray up = scene_ray_make(vec3_add_scaled(position, normal, lift), normal);
+    d->rays++;
+    bool is_gap = scene_find_surface(d->s, up, reach / GAP_SHARE, &over);
     float height = is_gap ? fmaxf(GAP_SHARE * over.distance, lift) : reach;
     *out = (photon_ground){.position = position,
                            .normal = normal,
                            .shape = foot.shape_index,
                            .instance = foot.instance_index,
-                           .above = vec3_add_scaled(position, normal, height)};
+                           .above = vec3_add_scaled(position, normal, height),
+                           .reach = reach};
     return true;
 }
 
-/* Finds the place on the surface in the direction of a point of the tangent plane. Returns false where another surface
- * is seen there, or none. */
-static bool find_place(const scene *s, const photon_ground *ground, vec3 offset, vec3 *out_position, vec3 *out_normal)
+/* Finds the place on the surface that is seen, from the point above, in the direction of a point of the tangent plane.
+ * Returns false where it is not the photon's surface that is seen there. */
+static bool find_place(divider *d, const photon_ground *ground, vec3 offset, photon *in_out_part)
 {
     surface_hit hit;
-    vec3 to = vec3_sub(vec3_add(ground->position, offset), ground->above);
+    const vec3 to = vec3_sub(vec3_add(ground->position, offset), ground->above);
     float distance = vec3_length(to);
-    if (!find_surface(s, ground->above, vec3_scale(to, 1.0f / distance), 2.0f * distance, &hit) ||
+    d->rays++;
+    if (!scene_find_surface(d->s, scene_ray_make(ground->above, vec3_scale(to, 1.0f / distance)), 2.0f * distance,
+                            &hit) ||
         hit.shape_index != ground->shape || hit.instance_index != ground->instance)
         return false;
-    vec3 normal = vec3_face_forward(hit.geometric_normal, vec3_negate(to)),
-         from = vec3_sub(hit.position, ground->position);
-    float height = vec3_dot(from, ground->normal), steepest = STEEPEST * vec3_length(offset);
-    if (!(vec3_dot(normal, ground->normal) > PHOTON_ESTIMATE_MIN_COS) || fabsf(height) > steepest)
+    const vec3 normal = vec3_face_forward(hit.geometric_normal, vec3_negate(to)),
+               from = vec3_sub(hit.position, ground->position);
+    float cosine = vec3_dot(normal, ground->normal), height = vec3_dot(from, ground->normal);
+    float lateral_squared = vec3_dot(from, from) - height * height;
+    if (!(cosine > PHOTON_ESTIMATE_MIN_COS) ||
+        surface_region_is_below_step(d->radius, lateral_squared, fabsf(height), cosine))
         return false;
-    *out_position = hit.position;
-    *out_normal = normal;
+    photon_set_position(in_out_part, hit.position);
+    in_out_part->normal = direction_encode(normal);
     return true;
 }
 
+/* Returns 1 for a photon that is not divided. */
 static uint32_t count_parts(const photon *p, double each)
 {
     double ratio = (double)flux_largest(p->flux) / each;
     return ratio > (double)STRONG_PHOTON_RATIO ? (uint32_t)ceil(ratio) : 1;
 }
 
-/* Writes the parts of a photon; the first one takes its place in the array. */
-static void divide(const scene *s, float radius, uint32_t parts, double each, photon *whole, photon *others)
+/* The point of an even spiral over the unit disc, in turns from where it begins. */
+static vec2 spiral_point(uint32_t i, uint32_t count, float begin)
 {
-    uint64_t key = hash_of_ray(parts, (vec3){whole->position[0], whole->position[1], whole->position[2]},
-                               direction_decode(whole->normal));
-    const photon strong = *whole;
-    float reach = radius * sqrtf((float)((double)flux_largest(strong.flux) / (each * (double)STRONG_PHOTON_RATIO)));
-    float turn = (float)(key >> 40) * 0x1p-24f;
-    photon_ground ground;
-    bool has_ground = find_ground(s, &strong, radius, reach, &ground);
-    const frame around = frame_from_z(has_ground ? ground.normal : direction_decode(strong.normal));
-    for (uint32_t i = 0; i < parts; i++) {
-        photon *part = i == 0 ? whole : &others[i - 1];
-        vec3 position, normal;
-        float sine, cosine, length = reach * sqrtf(((float)i + 0.5f) / (float)parts);
-        float turns = turn + GOLDEN_TURN * (float)i;
-        sincos_turns(turns - floorf(turns), &sine, &cosine);
-        vec3 offset = frame_to_world(&around, (vec3){length * cosine, length * sine, 0.0f});
-        *part = strong;
-        part->flux = flux_encode(rgb_scale(flux_decode(strong.flux), 1.0f / (float)parts), hash_combine(key, i));
-        if (!has_ground || !find_place(s, &ground, offset, &position, &normal))
-            continue;
-        part->position[0] = position.x;
-        part->position[1] = position.y;
-        part->position[2] = position.z;
-        part->normal = direction_encode(normal);
-    }
+    float turns = begin + GOLDEN_TURN * (float)i, length = sqrtf(((float)i + 0.5f) / (float)count), sine, cosine;
+    sincos_turns(turns - floorf(turns), &sine, &cosine);
+    return (vec2){length * cosine, length * sine};
 }
 
-/* Makes room for so many photons more. */
-static ag_status grow(photon_set *set, uint32_t added)
+/* Appends the parts that have a place of their own to the set, which has room for all of them; the photon keeps the
+ * flux of those that have none. */
+static void divide(divider *d, uint32_t parts, uint32_t index, photon_set *set)
 {
-    photon *larger = photon_records_create(set->count + added);
-    if (!larger)
+    const photon whole = set->photons[index];
+    const rgb flux = flux_decode(whole.flux);
+    const uint64_t key = hash_of_ray(0x70617274u, photon_position(&whole), direction_decode(whole.normal));
+    const float begin = (float)(key >> 40) * 0x1p-24f;
+    photon_ground ground;
+    if (!find_ground(d, &whole, &ground))
+        return;
+    const frame around = frame_from_z(ground.normal);
+    uint32_t staying = 0;
+    for (uint32_t i = 0; i < parts; i++) {
+        photon part = whole;
+        vec2 at = spiral_point(i, parts, begin);
+        vec3 offset = frame_to_world(&around, (vec3){ground.reach * at.x, ground.reach * at.y, 0.0f});
+        if (!find_place(d, &ground, offset, &part) && !find_place(d, &ground, vec3_negate(offset), &part)) {
+            staying++;
+            continue;
+        }
+        part.flux = flux_encode(rgb_scale(flux, 1.0f / (float)parts), hash_combine(key, i));
+        set->photons[set->count++] = part;
+    }
+    if (staying > 0)
+        set->photons[index].flux =
+            flux_encode(rgb_scale(flux, (float)staying / (float)parts), hash_combine(key, parts));
+    else
+        set->photons[index] = set->photons[--set->count];
+}
+
+/* Makes a set of the same photons, with room for so many more. */
+static ag_status copy_with_room(const photon_set *set, uint64_t room, photon_set *out_set)
+{
+    *out_set = *set;
+    if (room >= PHOTON_NONE - set->count)
         return AG_ERROR_MEMORY;
-    memcpy(larger, set->photons, set->count * sizeof *larger);
-    free(set->photons);
-    set->photons = larger;
+    out_set->photons = photon_records_create(set->count + (uint32_t)room);
+    if (!out_set->photons)
+        return AG_ERROR_MEMORY;
+    memcpy(out_set->photons, set->photons, set->count * sizeof *set->photons);
     return AG_OK;
 }
 
-ag_status strong_photons_divide(const scene *s, float radius, photon_set *in_out_set)
+ag_status strong_photons_divide(const scene *s, const run_context *run, float radius, photon_set *in_out_set)
 {
-    const double each = caustic_flux_each(in_out_set);
-    uint32_t added = 0;
-    for (uint32_t i = 0; each > 0.0 && i < in_out_set->count; i++)
-        added += count_parts(&in_out_set->photons[i], each) - 1;
-    if (added == 0 || !(radius > 0.0f))
+    divider d = {.s = s, .radius = radius, .each = caustic_flux_each(in_out_set)};
+    uint64_t room = 0;
+    for (uint32_t i = 0; d.each > 0.0 && i < in_out_set->count; i++) {
+        uint32_t parts = count_parts(&in_out_set->photons[i], d.each);
+        room += parts > 1 ? parts : 0;
+    }
+    if (room == 0 || !(radius > 0.0f))
         return AG_OK;
-    AG_TRY(grow(in_out_set, added));
-    uint32_t count = in_out_set->count;
+    photon_set divided;
+    AG_TRY(copy_with_room(in_out_set, room, &divided));
     for (uint32_t i = 0; i < in_out_set->count; i++) {
-        uint32_t parts = count_parts(&in_out_set->photons[i], each);
+        uint32_t parts = count_parts(&in_out_set->photons[i], d.each);
         if (parts == 1)
             continue;
-        divide(s, radius, parts, each, &in_out_set->photons[i], &in_out_set->photons[count]);
-        count += parts - 1;
+        if (run_is_cancelled(run)) {
+            photon_set_reset(&divided);
+            return AG_CANCELLED;
+        }
+        divide(&d, parts, i, &divided);
     }
-    in_out_set->count = count;
+    divided.rays += d.rays;
+    photon_set_reset(in_out_set);
+    *in_out_set = divided;
     return AG_OK;
 }

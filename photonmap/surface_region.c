@@ -70,24 +70,33 @@ static bool has_holes(const scene *s, const surface_hit *hit)
     return s->shapes[hit->shape_index].alpha_texture != SCENE_NO_TEXTURE;
 }
 
-/* The surface at the point itself, from above: its normal, and a start above it, which become the probe's. A narrow
- * corner may have no room for the full lift. */
-static bool find_foot(probe *p, vec3 position, vec3 normal, surface_hit *out_foot)
+bool surface_region_find_foot(const scene *s, vec3 position, vec3 normal, float radius, uint64_t *in_out_rays,
+                              surface_hit *out_foot, float *out_lift)
 {
-    vec3 down = vec3_negate(normal);
-    p->lift = p->radius * LIFT;
-    for (int trial = 0; trial < FOOT_TRIALS; trial++, p->lift *= 0.125f) {
-        vec3 above = vec3_add_scaled(position, normal, p->lift);
-        if (!find_surface(p, above, down, 2.0f * p->lift, out_foot) || !is_alike(out_foot, normal, down, 0.9f))
+    const vec3 down = vec3_negate(normal);
+    float lift = radius * LIFT;
+    for (int trial = 0; trial < FOOT_TRIALS; trial++, lift *= 0.125f) {
+        scene_ray ray = scene_ray_make(vec3_add_scaled(position, normal, lift), down);
+        ++*in_out_rays;
+        if (!scene_find_surface(s, ray, 2.0f * lift, out_foot) || !is_alike(out_foot, normal, down, 0.9f))
             continue;
         if (vec3_distance_squared(out_foot->position, position) >
-            out_foot->epsilon * out_foot->epsilon + 0.01f * p->lift * p->lift)
+            out_foot->epsilon * out_foot->epsilon + 0.01f * lift * lift)
             continue; /* another surface, between */
-        p->normal = vec3_face_forward(out_foot->geometric_normal, normal);
-        p->above = vec3_add_scaled(position, p->normal, p->lift);
-        return p->lift > 2.0f * out_foot->epsilon;
+        *out_lift = lift;
+        return lift > 2.0f * out_foot->epsilon;
     }
     return false;
+}
+
+/* Takes the surface at the point, and a start above it, for the probe's. */
+static bool find_foot(probe *p, vec3 position, vec3 normal, surface_hit *out_foot)
+{
+    if (!surface_region_find_foot(p->s, position, normal, p->radius, p->rays, out_foot, &p->lift))
+        return false;
+    p->normal = vec3_face_forward(out_foot->geometric_normal, normal);
+    p->above = vec3_add_scaled(position, p->normal, p->lift);
+    return true;
 }
 
 /* The surface that a probe has found below. Nothing is known of it where no ray has met it, but a clear space has told

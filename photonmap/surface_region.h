@@ -40,6 +40,13 @@ static const uint32_t SURFACE_REGION_OCTANT_BY_SIGNS[SURFACE_REGION_OCTANTS] = {
  * radius is none. cosine: > 0, between the two normals. All lengths in scene units. */
 bool surface_region_is_below_step(float radius, float lateral_squared, float drop, float cosine);
 
+/* Finds the surface at a point itself, from above: at first from a thirty-second of the radius above it; a narrow
+ * corner may have room for an eighth, or a sixty-fourth, of that alone. normal: unit, accurate to a degree. *out_lift:
+ * from how far above it was found, scene units. The rays cast are added to *in_out_rays. Returns false where the first
+ * surface below is not that of the point, or where a ray cannot start so close to it. */
+bool surface_region_find_foot(const scene *s, vec3 position, vec3 normal, float radius, uint64_t *in_out_rays,
+                              surface_hit *out_foot, float *out_lift);
+
 /* Finds the region around a point; its has_steps is set beforehand. min_cos: normals with a greater cosine belong to
  * the surface, as for photons. The rays cast are added to *in_out_rays, here and below. space: a clear space nearby, or
  * NULL; rays whose answer it tells are not cast. Returns false where the surface has neither an end nor a hole nor a

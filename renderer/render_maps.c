@@ -140,29 +140,33 @@ static ag_status build_maps(ag_context *context, const scene *s, const ag_render
     AG_TRY(photon_map_create(&context->run, global, &map_settings, 0.0, 0.7, out_global));
     /* caustics gather in spots: how many of their photons there are does not tell how far apart they lie */
     AG_TRY(caustic_radius_find(out_global, caustic, &map_settings.radius_bound));
-    AG_TRY(strong_photons_divide(s, map_settings.radius_bound, caustic));
     map_settings.irradiance_fraction = 1.0f;
     map_settings.is_steady = false;
+    AG_TRY(strong_photons_divide(s, &context->run, photon_map_largest_radius(&map_settings, caustic->count), caustic));
     return photon_map_create(&context->run, caustic, &map_settings, 0.7, 1.0, out_caustic);
+}
+
+static void count_photons(ag_context *context, const photon_set *global, const photon_set *caustic)
+{
+    ag_statistics *statistics = &context->statistics;
+    statistics->photons_emitted += global->emitted_paths + caustic->emitted_paths;
+    statistics->photons_stored_global += global->count;
+    statistics->photons_stored_caustic += caustic->count;
+    statistics->rays_photon += global->rays + caustic->rays;
+    transmittance_warn_of_cut(context->log, global->rays_cut + caustic->rays_cut);
+    log_message(context->log, AG_LOG_INFO, "photons: %u in the global map, %u in the caustic map, %llu paths",
+                global->count, caustic->count, (unsigned long long)(global->emitted_paths + caustic->emitted_paths));
 }
 
 static ag_status trace_maps(ag_context *context, const scene *s, const ag_render_settings *settings,
                             photon_map *out_global, photon_map *out_caustic)
 {
-    ag_statistics *statistics = &context->statistics;
     *out_global = *out_caustic = (photon_map){0};
     photon_set global = {0}, caustic = {0};
     phase_begin begin = context_begin_phase();
     ag_status status = trace_photons(context, s, settings, &global, &caustic);
     if (status == AG_OK) {
         context_end_phase(context, AG_PHASE_PHOTONS, begin);
-        statistics->photons_emitted += global.emitted_paths + caustic.emitted_paths;
-        statistics->photons_stored_global += global.count;
-        statistics->photons_stored_caustic += caustic.count;
-        statistics->rays_photon += global.rays + caustic.rays;
-        transmittance_warn_of_cut(context->log, global.rays_cut + caustic.rays_cut);
-        log_message(context->log, AG_LOG_INFO, "photons: %u in the global map, %u in the caustic map, %llu paths",
-                    global.count, caustic.count, (unsigned long long)(global.emitted_paths + caustic.emitted_paths));
         begin = context_begin_phase();
         status = build_maps(context, s, settings, &global, &caustic, out_global, out_caustic);
     }
@@ -175,6 +179,7 @@ static ag_status trace_maps(ag_context *context, const scene *s, const ag_render
     }
     run_progress(&context->run, AG_PHASE_MAP, 1.0);
     context_end_phase(context, AG_PHASE_MAP, begin);
+    count_photons(context, &out_global->set, &out_caustic->set);
     return AG_OK;
 }
 

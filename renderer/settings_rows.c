@@ -212,7 +212,8 @@ static const setting_row ROWS[] = {
               .help = "photons to store in the caustic map, where there are mirrors or glass (default: by the number "
                       "of samples, 500000 at most)",
               .manual = "Photons to store in the caustic map, where there are mirrors or glass. The default is one for "
-                        "each camera sample of the whole frame, from 65536 to 500000, whatever *--photons* is.",
+                        "each camera sample of the whole frame, from 65536 to 500000, whatever *--photons* is. A few "
+                        "that are far stronger than the others are divided, so that a few more are kept.",
               .is_of_photon_map = true},
      FIELD(caustic_photon_count),
      .kind = SETTING_COUNT,

@@ -103,7 +103,7 @@ static importance_map pass_to_inside(void)
 
 static bool is_inside(const photon *p)
 {
-    vec3 at = {p->position[0], p->position[1], p->position[2]};
+    vec3 at = photon_position(p);
     vec3 to_middle = vec3_sub((vec3){0.0f, 0.0f, 1.0f}, at);
     return fabsf(to_middle.x) < 1.001f && fabsf(to_middle.y) < 1.001f && fabsf(to_middle.z) < 1.001f &&
            vec3_dot(to_middle, direction_decode(p->normal)) > 0.0f;

@@ -186,7 +186,7 @@ static spread spread_inside(test_run *r, const scene *s, eye_pilot *pilot, pilot
         assert_int_equal(photon_tracing_run(s, &r->run, &settings, &set), AG_OK);
         for (uint32_t i = 0; i < set.count; i++) {
             const photon *p = &set.photons[i];
-            vec3 at = {p->position[0], p->position[1], p->position[2]};
+            vec3 at = photon_position(p);
             if (fmaxf(fmaxf(fabsf(at.x), fabsf(at.y)), fabsf(at.z)) > 1.001f ||
                 vec3_dot(at, direction_decode(p->normal)) > 0.0f)
                 continue;

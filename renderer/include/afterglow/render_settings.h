@@ -87,7 +87,8 @@ typedef struct ag_render_settings {
                               gather_guiding are then 0 unless set */
     uint64_t caustic_photon_count; /* photons to store in the caustic map, [0, 2^32 - 2]. Default
                                       AG_PHOTON_COUNT_AUTOMATIC: half of what that means for photon_count in a
-                                      room */
+                                      room. A few that are far stronger than the others are divided, so that a
+                                      few more are kept */
     int nearest;                   /* photons of an estimate, [1, 65536] */
     float radius;              /* largest radius of an estimate, scene units; 0: derived from the photons' density */
     float irradiance_fraction; /* share of the photons at which irradiance is kept, (0, 1]: gather rays look up the
