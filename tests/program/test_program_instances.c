@@ -80,7 +80,8 @@ static void test_photon_map(void **state)
         picture p = RENDER(rooms[i], "--spp=1", "--gather-samples=1", "--size=24x24", "--photons=200000",
                            "--caustic-photons=100000", "--stats=stats.json");
         json_t *stats = stats_read(in_folder("stats.json"));
-        assert_int_equal(stats_integer(stats, "photons.stored_caustic"), 100000);
+        /* strong ones are divided into more */
+        assert_in_range(stats_integer(stats, "photons.stored_caustic"), 100000, 105000);
         assert_int_equal(stats_integer(stats, "photons.stored_global"), 200000);
         caustic_emitted[i] = stats_integer(stats, "photons.emitted");
         json_decref(stats);
