@@ -104,10 +104,10 @@ uint64_t photon_map_spaces_bytes(const scene *s, uint64_t photon_count);
 /* Returns the number of neighbours that a worker's scratch memory holds. */
 uint32_t photon_map_scratch_count(const photon_map *map);
 
-/* The cosine between two normals is at least this. Photons of an estimate lie within 60 degrees, so that on a convex
- * surface the chord of the search can grow to the radius of curvature, and no photon of a wall at a right angle counts;
- * the photon whose irradiance stands for a point lies within 25 degrees. */
-#define PHOTON_ESTIMATE_MIN_COS 0.5f
+/* The cosine between two normals is at least this. Photons of an estimate lie within 37 degrees: more would give the
+ * front of a moulding some of the light on those of its sides that face a window. The photon whose irradiance stands
+ * for a point lies within 25 degrees. */
+#define PHOTON_ESTIMATE_MIN_COS 0.8f
 #define PHOTON_NEAREST_MIN_COS  0.9f
 
 /* Returns whether a surface lies between a surface point, with its normal, and a photon of the blocks. It casts one

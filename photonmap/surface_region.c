@@ -13,8 +13,8 @@
 static const float LIFT = 1.0f / 32.0f;
 /* Where nothing stands in the way the surface is looked for this far out; beyond lie 2 % of the disc at most. */
 static const float PROBE_AT = 0.9f;
-/* On a strip, the surface is looked for up to this share of the way to what stands in the way: a rod beside another one
- * ends before it. */
+/* Before what stands in the way the surface is looked for up to this share of the way there: a rod beside another one
+ * ends before it, and so does the ridge of a moulding before the next one. */
 static const float PROBE_BEFORE = 0.98f;
 /* On strips ends are found within this share of how far they are, so that the strip's direction is known. */
 static const float FINE = 1.0f / 64.0f;
@@ -22,8 +22,9 @@ enum { BISECTIONS = 7, BISECTIONS_MOST = 12, FOOT_TRIALS = 3 };
 /* A surface that falls by less than this share of the way is taken as flat: its area is right within 0.04 %. The plane
  * that bounds a clear space is level if the cosine between the normals is above FLAT_COS. */
 static const float FLAT_SLOPE = 0.02f, FLAT_COS = 0.9999f;
-/* The largest tangent of half the angle by which a surface bends: normals are alike up to 60 degrees. */
-static const float HALF_BEND_MOST = 0.57735f;
+/* The largest tangent of half the angle by which a surface bends: normals are alike up to the angle whose cosine is
+ * PHOTON_ESTIMATE_MIN_COS. */
+static const float HALF_BEND_MOST = 0.333333f;
 /* The drop tells nothing of a bend across the tangent: the cosine between the two counts as no less than this. */
 static const float ALONG_LEAST = 0.25f;
 /* Lateral distances are no shorter than this share of the radius. */
@@ -190,8 +191,6 @@ static float find_extent(const probe *p, vec3 tangent, vec3 *out_bend)
         p->space && clear_space_has_line(p->s, p->space, p->above, vec3_add_scaled(p->above, tangent, p->radius));
     if (!is_free && find_surface(p, p->above, tangent, p->radius, &hit)) {
         end = is_alike(&hit, p->normal, tangent, p->min_cos) ? p->radius : hit.distance;
-        if (!p->is_fine)
-            return end;
         high = fminf(high, PROBE_BEFORE * hit.distance);
     }
     below last, found;

@@ -80,7 +80,7 @@ bool surface_region_is_whole(const scene *s, const clear_space *space, vec3 posi
 bool surface_region_contains(const surface_region *region, vec3 position);
 
 /* Returns the area of the surface within radius of the centre, m^2. Where it ends because it bends away, that is more
- * than the region has in the plane: of a ball, the cap whose rim is 60 degrees off has four thirds of it. */
+ * than the region has in the plane: of a ball, the cap whose rim is 37 degrees off has 10 / 9 of it. */
 double surface_region_area(const surface_region *region, float radius);
 
 #endif

@@ -4,8 +4,8 @@
 
 static const float SQRT_2 = 1.41421356f;
 
-/* Of the normal's part in the plane, where normals are alike up to 60 degrees. */
-static const float SINE_SQUARED_MOST = 0.75f;
+/* Of the normal's part in the plane, where normals are alike: 1 - PHOTON_ESTIMATE_MIN_COS^2. */
+static const float SINE_SQUARED_MOST = 0.36f;
 
 /* A point of an octant as a sum of its two bounds. */
 static void split_by_bounds(int octant, const float at[2], float out_parts[2])

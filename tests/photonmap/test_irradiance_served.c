@@ -376,6 +376,59 @@ static void light_stays_in_its_patch(void **state)
     test_run_reset(&r);
 }
 
+/* Writes ridges of trapezoids as pbrt's text: a mesh of their fronts, below and on top, and one of their flanks, which
+ * lean by 50 degrees. */
+static void make_moulding(char *world, size_t size)
+{
+    enum { RIDGES = 16 };
+    static const double X[] = {0.0, 0.04, 0.06, 0.1, 0.12}, Y[] = {0.0, 0.0, 0.0238, 0.0238, 0.0};
+    size_t used = 0;
+    for (int first = 0; first < 2; first++) { /* strips of a ridge: 0 and 2 are fronts, 1 and 3 are flanks */
+        used += (size_t)snprintf(world + used, size - used, "Shape \"trianglemesh\" \"integer indices\" [");
+        for (int i = 0; i < 2 * RIDGES; i++)
+            used += (size_t)snprintf(world + used, size - used, "%d %d %d %d %d %d ", 4 * i, 4 * i + 1, 4 * i + 2,
+                                     4 * i + 1, 4 * i + 3, 4 * i + 2);
+        used += (size_t)snprintf(world + used, size - used, "] \"point3 P\" [");
+        for (int i = 0; i < 4 * RIDGES; i += 2)
+            for (int end = 0; end < 2; end++) {
+                double x = 0.12 * (i / 4) - 0.06 * RIDGES + X[first + i % 4 + end], y = Y[first + i % 4 + end];
+                used += (size_t)snprintf(world + used, size - used, "%.4g %.4g -1 %.4g %.4g 1 ", x, y, x, y);
+            }
+        used += (size_t)snprintf(world + used, size - used, "]\n");
+    }
+    assert_true(used < size);
+}
+
+/* The flanks of a moulding beside a window have ten times the light of its fronts. Fronts receive their own, within 12
+ * %: where the next front is found beyond a flank, the flank's area counts, and none of its photons. With photons of
+ * all normals within 60 degrees fronts received 3.7 to 5.5 times their light. */
+static void fronts_have_no_light_of_flanks(void **state)
+{
+    (void)state;
+    enum { FIELDS = 6, NEAREST = 50 };
+    static const double PHOTONS_A_DISC[] = {30.0, 300.0, 3000.0};
+    static char world[16384];
+    make_moulding(world, sizeof world);
+    const served_case c = {"a moulding", world, 0.3f, {0, 0, 0}, 1.5f, 2, {{0.1f, 0.1f}, {1, 1}}};
+    test_run r;
+    test_run_init(&r, 1);
+    scene *s = test_scene_create(&r, world);
+    int wrong = 0;
+    for (size_t d = 0; d < sizeof PHOTONS_A_DISC / sizeof *PHOTONS_A_DISC; d++) {
+        double sum = 0.0, squares = 0.0;
+        for (int f = 0; f < FIELDS; f++) {
+            double one = ask(&r, s, &c, PHOTONS_A_DISC[d], NEAREST, IRRADIANCE_ON_DEMAND, (uint64_t)(f + 1)).dim;
+            sum += one, squares += one * one;
+        }
+        double mean = sum / FIELDS, sigma = sqrt(fmax(0.0, squares / FIELDS - mean * mean) / (FIELDS - 1));
+        print_message("fronts, %g photons a disc: mean %.4f +- %.4f\n", PHOTONS_A_DISC[d], mean, sigma);
+        wrong += fabs(mean - 1.0) > 0.12 + 3.0 * sigma;
+    }
+    assert_int_equal(wrong, 0);
+    scene_destroy(s);
+    test_run_reset(&r);
+}
+
 /* A door that ends 1 mm above the floor, which has a hundredth of the light on its other side. Photons beyond the door
  * are the nearest ones to some of the dark points beside it, and a line close above the floor passes below the door. */
 static void light_stays_behind_a_door(void **state)
@@ -461,6 +514,6 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(points_receive_what_is_there), cmocka_unit_test(small_surfaces_are_seen),
         cmocka_unit_test(curves_are_asked_for_nothing), cmocka_unit_test(light_stays_in_its_patch),
-        cmocka_unit_test(light_stays_behind_a_door)};
+        cmocka_unit_test(light_stays_behind_a_door),    cmocka_unit_test(fronts_have_no_light_of_flanks)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
