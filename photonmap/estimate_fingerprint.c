@@ -14,8 +14,7 @@ enum { PHOTONS = 4096, PHOTONS_OF_FLOOR = 1536, ESTIMATE_EVERY = 8 };
 /* Caustic photons of several fluxes, so faint that no other bound decides how far their estimates reach. */
 enum { CAUSTIC_PHOTONS = 16 };
 static const float CAUSTIC_FLUX = 1e-4f;
-/* Of as many photons, along a line from the floor's centre, one is divided. Lengths are shares of the floor's radius.
- */
+/* Of as many photons on a line from the floor's centre, one is divided. Lengths are shares of the floor's radius. */
 enum { DIVIDED = 5 };
 static const float DIVIDED_FLUX = 100.0f, DIVIDED_FROM_CENTER = 0.9f, DIVIDED_RADIUS = 0.05f;
 /* Estimates of few photons and of many go by other bounds. */
