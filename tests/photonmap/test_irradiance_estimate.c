@@ -40,7 +40,7 @@ static void even_fields(void **state)
         for (size_t i = 0; i < sizeof NEAREST / sizeof *NEAREST; i++) {
             double expected = (double)FIELD_FLUX.r * field_irradiance((field_kind)kind), k = NEAREST[i];
             double apart = fmin(POINTS, PHOTONS / k), sigma = 1.0 / sqrt(k * apart);
-            assert_relative(mean_of((field_kind)kind, NEAREST[i], 1.0f), expected, 4.0 * sigma + 0.002);
+            assert_relative(mean_of((field_kind)kind, NEAREST[i], FIELD_SPHERE_RADIUS), expected, 4.0 * sigma + 0.002);
         }
 }
 

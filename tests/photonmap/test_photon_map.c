@@ -15,7 +15,7 @@ static void expect_mean(field_kind kind, uint32_t nearest, uint32_t photons, uin
     points /= FEWER;
     for (int seed = 0; seed < seeds; seed++) {
         photon_set set = field_photons(kind, photons, (uint64_t)(1000 * seed) + nearest);
-        photon_map map = field_map(&r, &set, nearest, kind == FIELD_SPHERE ? 1.0f : 0.15f);
+        photon_map map = field_map(&r, &set, nearest, kind == FIELD_SPHERE ? FIELD_SPHERE_RADIUS : 0.15f);
         irradiance_cache cache;
         assert_int_equal(
             irradiance_cache_create(&map, is_cached ? IRRADIANCE_ON_DEMAND : IRRADIANCE_UNCACHED, 1, &cache), AG_OK);
