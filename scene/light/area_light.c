@@ -47,10 +47,24 @@ static rgb emitted_radiance(const scene *s, const light *l, const surface_hit *h
 
 /* --- towards a point --- */
 
+static bool is_whole_sphere(const shape *s) { return s->kind == SHAPE_SPHERE && s->as.quadric.uniform_radius > 0.0f; }
+
+/* The point of a whole sphere in the direction n from its centre. */
+static surface_sample sphere_point(const shape *lamp, vec3 n)
+{
+    vec3 center = lamp->as.quadric.center;
+    float r = lamp->as.quadric.uniform_radius;
+    surface_sample at = {0};
+    at.position = vec3_add_scaled(center, n, r);
+    at.geometric_normal = lamp->flip_normal ? vec3_negate(n) : n;
+    at.epsilon = (vec3_max_abs(center) + r) * SHAPE_EPSILON_RELATIVE;
+    return at;
+}
+
 /* light_ball_cone of a lamp that is a whole sphere. */
 static bool sphere_cone(const shape *s, vec3 point, float *out_one_minus_cos)
 {
-    if (s->kind != SHAPE_SPHERE || s->as.quadric.uniform_radius <= 0.0f)
+    if (!is_whole_sphere(s))
         return false;
     return light_ball_cone(s->as.quadric.center, s->as.quadric.uniform_radius, point, out_one_minus_cos);
 }
@@ -65,12 +79,8 @@ static surface_sample sample_sphere_cone(const shape *lamp, vec3 point, vec2 u, 
     vec3 local = sample_uniform_cone(u, cone);
     float sin2 = fmaxf(0.0f, local.x * local.x + local.y * local.y);
     float along = distance * local.z - sqrtf(fmaxf(0.0f, r * r - distance * distance * sin2));
-    vec3 n = vec3_normalize(vec3_sub(vec3_add_scaled(point, frame_to_world(&f, local), along), center));
-    surface_sample at = {0};
-    at.position = vec3_add_scaled(center, n, r);
-    at.geometric_normal = lamp->flip_normal ? vec3_negate(n) : n;
-    at.epsilon = (vec3_max_abs(center) + r) * SHAPE_EPSILON_RELATIVE;
-    return at;
+    return sphere_point(lamp,
+                        vec3_normalize(vec3_sub(vec3_add_scaled(point, frame_to_world(&f, local), along), center)));
 }
 
 /* How a point on the lamp is sampled from a lit point. */
@@ -171,6 +181,19 @@ static float pdf_from_point(const scene *s, const light *l, vec3 point, const su
 
 /* --- from the lamp --- */
 
+/* Whether photons start at a whole sphere by their direction in the world, and then by where they pass the centre: all
+ * lines that meet a sphere are alike, and a guide of two numbers knows which directions are of use. */
+static bool starts_by_lines(const light *l, const shape *lamp) { return is_whole_sphere(lamp) && !l->as.area.map; }
+
+/* Where a line in that direction leaves the side of a whole sphere that shines. across: in the disc of radius 1. */
+static surface_sample sphere_start(const shape *lamp, vec3 direction, vec2 across, bool is_behind)
+{
+    float rise = sqrtf(fmaxf(1.0f - across.x * across.x - across.y * across.y, 0.0f));
+    frame f = frame_from_z(direction);
+    return sphere_point(lamp,
+                        frame_to_world(&f, (vec3){across.x, across.y, lamp->flip_normal != is_behind ? -rise : rise}));
+}
+
 static bool emit(const scene *s, const light *l, const light_target *target, const emission_numbers *numbers,
                  struct rng *random, light_emission *out)
 {
@@ -181,23 +204,30 @@ static bool emit(const scene *s, const light *l, const light_target *target, con
     if (l->as.area.map && !radiance_map_sample(l->as.area.map, u, &u, &density))
         return false;
     surface_sample at = shape_sample_area(lamp, u);
-    rgb radiance = rgb_mul(l->as.area.radiance, lamp_sampled_value(s, l, &at));
+    const bool is_behind = l->as.area.two_sided && numbers->part < 0.5f;
     vec3 n = at.geometric_normal;
+    float weight;
     if (light_aim_at(target, at.position, 1.0f, numbers->direction, &out->direction, &pdf)) {
         float cosine = vec3_dot(n, out->direction);
         if (l->as.area.two_sided && cosine < 0.0f) {
             n = vec3_negate(n);
             cosine = -cosine;
         }
-        out->flux = rgb_scale(radiance, fmaxf(cosine, 0.0f) / (at.pdf_area * density * pdf));
+        weight = fmaxf(cosine, 0.0f) / (at.pdf_area * density * pdf);
     } else {
-        if (l->as.area.two_sided && numbers->part < 0.5f)
-            n = vec3_negate(n);
-        frame f = frame_from_z(n);
-        out->direction = frame_to_world(&f, sample_cosine_hemisphere(numbers->direction));
         /* L cos / (pdf_area cos/pi): the same for every photon but on ellipsoids, and nearly so by a radiance map */
-        out->flux = rgb_scale(radiance, AG_PI * (l->as.area.two_sided ? 2.0f : 1.0f) / (at.pdf_area * density));
+        weight = AG_PI * (l->as.area.two_sided ? 2.0f : 1.0f) / (at.pdf_area * density);
+        if (starts_by_lines(l, lamp)) {
+            out->direction = sample_uniform_sphere(numbers->direction);
+            at = sphere_start(lamp, out->direction, sample_disk_concentric(u), is_behind);
+            n = is_behind ? vec3_negate(at.geometric_normal) : at.geometric_normal;
+        } else {
+            n = is_behind ? vec3_negate(n) : n;
+            frame f = frame_from_z(n);
+            out->direction = frame_to_world(&f, sample_cosine_hemisphere(numbers->direction));
+        }
     }
+    out->flux = rgb_scale(rgb_mul(l->as.area.radiance, lamp_sampled_value(s, l, &at)), weight);
     out->origin = vec3_add_scaled(at.position, n, at.epsilon);
     out->medium = vec3_dot(n, at.geometric_normal) > 0.0f ? lamp->medium_outside : lamp->medium_inside;
     return !rgb_is_black(out->flux);
@@ -209,17 +239,25 @@ static bool emission_numbers_of(const scene *s, const light *l, vec3 point, vec2
     const shape *lamp = &s->shapes[l->as.area.shape_index];
     float cone;
     lamp_sampling sampling = sampling_from(l, lamp, point, &cone);
-    if (sampling == BY_CONE || (sampling == BY_AREA && l->as.area.map))
+    if (l->as.area.map && sampling != BY_MAP)
         return false; /* not by the numbers of the position */
-    in_out->position = sampling == BY_SOLID_ANGLES
-                           ? shape_sample_numbers(lamp, towards->lamp_triangle, towards->lamp_barycentrics)
-                           : u;
     vec3 n = towards->lamp_normal, direction = vec3_negate(towards->direction);
     if (l->as.area.two_sided) {
         bool is_behind = vec3_dot(n, direction) < 0.0f;
         in_out->part = float_below_one(0.5f * in_out->part + (is_behind ? 0.0f : 0.5f));
         n = is_behind ? vec3_negate(n) : n;
     }
+    if (starts_by_lines(l, lamp)) {
+        frame f = frame_from_z(direction);
+        vec3 across = frame_to_local(&f, vec3_sub(point, lamp->as.quadric.center));
+        const float inverse = 1.0f / lamp->as.quadric.uniform_radius;
+        in_out->direction = sample_uniform_sphere_inverse(direction);
+        in_out->position = sample_disk_concentric_inverse((vec2){across.x * inverse, across.y * inverse});
+        return true;
+    }
+    in_out->position = sampling == BY_SOLID_ANGLES
+                           ? shape_sample_numbers(lamp, towards->lamp_triangle, towards->lamp_barycentrics)
+                           : u;
     frame f = frame_from_z(n);
     vec3 local = frame_to_local(&f, direction);
     in_out->direction = sample_disk_concentric_inverse((vec2){local.x, local.y});

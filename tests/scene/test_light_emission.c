@@ -92,6 +92,9 @@ static void area_lights_emit_by_the_cosine(void **state)
     emission both = emit(LAMP "\"bool twosided\" true Shape \"disk\" \"float radius\" [2]", z_axis, NULL);
     assert_relative(both.flux[0], 3.0 * PI * 2.0 * PI * 4.0, 1e-4);
     assert_close(both.mean_cos, 0.0, 5.0 * sqrt(0.5 / SAMPLES));
+    both = emit(LAMP "\"bool twosided\" true Shape \"sphere\" \"float radius\" [2]", lamp_normal, NULL);
+    assert_relative(both.flux[0], 3.0 * PI * 2.0 * 4.0 * PI * 4.0, 1e-4);
+    assert_close(both.mean_cos, 0.0, 5.0 * sqrt(0.5 / SAMPLES));
 }
 
 static double lambertian(void *user, vec3 d) { return (void)user, d.z > 0.0f ? (double)d.z / PI : 0.0; }
@@ -119,6 +122,11 @@ static void directions_are_spread_as_they_should(void **state)
     memset(counts, 0, sizeof counts);
     emission e = emit("LightSource \"point\" \"rgb I\" [3 2 1]", z_axis, counts);
     assert_relative(e.flux[1], 4.0 * PI * 2.0, 1e-6);
+    integrate_bins(uniform, NULL, 1, bins);
+    assert_chi_square(counts, bins, SAMPLES, 0.0);
+
+    memset(counts, 0, sizeof counts);
+    emit(LAMP "Rotate 50 1 2 3 Shape \"sphere\"", z_axis, counts);
     integrate_bins(uniform, NULL, 1, bins);
     assert_chi_square(counts, bins, SAMPLES, 0.0);
 
@@ -437,7 +445,13 @@ static void ways_to_lamps_tell_where_photons_begin(void **state)
         {"AttributeBegin Rotate 180 1 0 0 AreaLightSource \"diffuse\" \"bool twosided\" true Shape \"disk\" "
          "AttributeEnd",
          FLOOR, true},
-        {"AttributeBegin AreaLightSource \"diffuse\" Shape \"sphere\" AttributeEnd", FLOOR, false},
+        {"AttributeBegin AreaLightSource \"diffuse\" Shape \"sphere\" AttributeEnd", FLOOR, true},
+        {"AttributeBegin AreaLightSource \"diffuse\" \"bool twosided\" true Shape \"sphere\" \"float radius\" 2 AttributeEnd",
+         FLOOR, true},
+        {"AttributeBegin Translate 0 0 2 ReverseOrientation AreaLightSource \"diffuse\" Shape \"sphere\" \"float radius\" 4 "
+         "AttributeEnd",
+         FLOOR, true},
+        {"AttributeBegin Scale 1 .9 1 AreaLightSource \"diffuse\" Shape \"sphere\" AttributeEnd", FLOOR, true},
         {"LightSource \"point\"", FLOOR, true},
         {"LightSource \"spot\"", FLOOR, false},
     };
