@@ -198,10 +198,9 @@ void emission_starts_move(const scene *s, const importance_map *asked, emission_
         emission_start *start = &in_out_starts->trials[i].start;
         float probability;
         light_emission sent;
-        rng unused = rng_make(0, 0, 0); /* light from afar needs no further numbers */
         const light *lamp = &s->lights[scene_pick_light_by_power(s, start->u[0], &probability)];
         emission_numbers numbers = emission_start_numbers(start, NULL);
-        if (!light_is_everywhere(lamp) || !light_emit(s, lamp, NULL, &numbers, &unused, &sent))
+        if (!light_is_everywhere(lamp) || !light_emit(s, lamp, NULL, &numbers, &sent))
             continue;
         const light_sample towards = {.direction = vec3_negate(sent.direction), .distance = INFINITY};
         numbers.focus = focus;

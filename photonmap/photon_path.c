@@ -174,7 +174,7 @@ static bool begin_path(photon_tracer *t, uint64_t number, photon_path *out_path)
     const light *lamp = &s->lights[scene_pick_light_by_power(s, begun.u[0], &probability)];
     emission_numbers numbers = emission_start_numbers(&begun, settings->focus);
     light_emission start;
-    if (!(probability > 0.0f) || !light_emit(s, lamp, t->target, &numbers, &random, &start))
+    if (!(probability > 0.0f) || !light_emit(s, lamp, t->target, &numbers, &start))
         return false;
     scene_ray ray = scene_ray_make(start.origin, start.direction);
     ray.skips_uv = true;

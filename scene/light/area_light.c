@@ -195,9 +195,8 @@ static surface_sample sphere_start(const shape *lamp, vec3 direction, vec2 acros
 }
 
 static bool emit(const scene *s, const light *l, const light_target *target, const emission_numbers *numbers,
-                 struct rng *random, light_emission *out)
+                 light_emission *out)
 {
-    (void)random;
     const shape *lamp = &s->shapes[l->as.area.shape_index];
     vec2 u = numbers->position;
     float density = 1.0f, pdf;

@@ -54,9 +54,8 @@ static bool sample_from_point(const scene *s, const light *l, vec3 point, vec2 u
 }
 
 static bool emit(const scene *s, const light *l, const light_target *target, const emission_numbers *numbers,
-                 struct rng *random, light_emission *out)
+                 light_emission *out)
 {
-    (void)random;
     return light_emit_from_afar(s, l, target, numbers, direction_from(l, numbers->direction), irradiance(l), 1.0f,
                                 out) &&
            !rgb_is_black(out->flux);

@@ -28,10 +28,10 @@ static rgb intensity(const light *l, vec3 direction)
 }
 
 static bool emit(const scene *s, const light *l, const light_target *target, const emission_numbers *numbers,
-                 struct rng *random, light_emission *out)
+                 light_emission *out)
 {
     float pdf;
-    (void)s, (void)random;
+    (void)s;
     if (light_aim_point(l, target, 2.0f, numbers, out))
         return !rgb_is_black(out->flux);
     if (!environment_sample_whole(&l->as.goniometric.intensity, numbers->direction, &out->direction, &out->flux, &pdf))

@@ -96,12 +96,11 @@ static bool emit_through_portal(const scene *s, const light *l, const light_targ
 }
 
 static bool emit(const scene *s, const light *l, const light_target *target, const emission_numbers *numbers,
-                 struct rng *random, light_emission *out)
+                 light_emission *out)
 {
     vec3 to_light;
     rgb radiance;
     float pdf;
-    (void)random;
     if (l->as.infinite.portal)
         return emit_through_portal(s, l, target, numbers, out);
     return environment_sample_whole(&l->as.infinite.radiance, numbers->direction, &to_light, &radiance, &pdf) &&

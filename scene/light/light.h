@@ -203,7 +203,7 @@ typedef struct emission_numbers {
  * meet the ball is sampled, as far as it is known, with its share of the flux (Jensen 1996: projection maps). Further
  * random numbers are drawn from the path's stream (math/rng.h). Returns false where the sample carries no flux. */
 bool light_emit(const struct scene *s, const light *l, const light_target *target, const emission_numbers *numbers,
-                struct rng *random, light_emission *out_emission);
+                light_emission *out_emission);
 
 /* Finds the numbers, up to rounding, by which light_emit without a target emits a photon along the line that
  * light_sample_from_point has sampled from the point with u. in_out_numbers->part comes in as any number in [0, 1), for

@@ -142,10 +142,10 @@ bool light_emit_from_afar(const scene *s, const light *l, const light_target *ta
 }
 
 bool light_emit(const scene *s, const light *l, const light_target *target, const emission_numbers *numbers,
-                rng *random, light_emission *out_emission)
+                light_emission *out_emission)
 {
     out_emission->medium = l->medium; /* of area lights: by the side */
-    return light_type_of(l->kind)->emit(s, l, target, numbers, random, out_emission);
+    return light_type_of(l->kind)->emit(s, l, target, numbers, out_emission);
 }
 
 bool light_emission_numbers(const scene *s, const light *l, vec3 point, vec2 u, const light_sample *towards,
@@ -169,5 +169,5 @@ bool light_sample_emission(const scene *s, const light *l, const light_target *t
                            light_emission *out_emission)
 {
     emission_numbers numbers = emission_numbers_draw(random);
-    return light_emit(s, l, target, &numbers, random, out_emission);
+    return light_emit(s, l, target, &numbers, out_emission);
 }

@@ -42,7 +42,7 @@ typedef struct light_type {
     struct environment *(*picture)(const light *l);
     /* light_emit. *out_emission has the light's own medium. */
     bool (*emit)(const scene *s, const light *l, const light_target *target, const emission_numbers *numbers,
-                 struct rng *random, light_emission *out_emission);
+                 light_emission *out_emission);
     /* light_emission_numbers; NULL: they are not known. */
     bool (*emission_numbers_of)(const scene *s, const light *l, vec3 point, vec2 u, const light_sample *towards,
                                 emission_numbers *in_out_numbers);

@@ -56,9 +56,9 @@ static rgb intensity(const light *l, vec3 direction)
 }
 
 static bool emit(const scene *s, const light *l, const light_target *target, const emission_numbers *numbers,
-                 struct rng *random, light_emission *out)
+                 light_emission *out)
 {
-    (void)s, (void)random;
+    (void)s;
     if (!light_aim_point(l, target, 2.0f, numbers, out)) {
         out->direction = sample_uniform_sphere(numbers->direction);
         out->flux = l->power;

@@ -73,17 +73,36 @@ void projection_destroy(projection *p)
     free(p);
 }
 
-rgb projection_value(const projection *p, vec3 direction)
+/* The pixel in a direction, and the place in it, from its top left corner. Returns false outside the pyramid. */
+static bool find_pixel(const projection *p, vec3 direction, uint32_t *out_x, uint32_t *out_y, vec2 *out_within)
 {
     if (!(direction.z >= NEAR))
-        return rgb_gray(0.0f);
+        return false;
     float x = direction.x / direction.z / p->reach_x, y = direction.y / direction.z / p->reach_y;
     if (!(fabsf(x) <= 1.0f && fabsf(y) <= 1.0f))
-        return rgb_gray(0.0f);
-    uint32_t i = (uint32_t)(0.5f * (1.0f + x) * (float)p->width), j = (uint32_t)(0.5f * (1.0f - y) * (float)p->height);
-    i = i < p->width ? i : p->width - 1;
-    j = j < p->height ? j : p->height - 1;
-    return p->pixels[(size_t)j * p->width + i];
+        return false;
+    x = 0.5f * (1.0f + x) * (float)p->width, y = 0.5f * (1.0f - y) * (float)p->height;
+    *out_x = (uint32_t)x < p->width ? (uint32_t)x : p->width - 1;
+    *out_y = (uint32_t)y < p->height ? (uint32_t)y : p->height - 1;
+    *out_within = (vec2){x - (float)*out_x, y - (float)*out_y};
+    return true;
+}
+
+rgb projection_value(const projection *p, vec3 direction)
+{
+    uint32_t x, y;
+    vec2 within;
+    return find_pixel(p, direction, &x, &y, &within) ? p->pixels[(size_t)y * p->width + x] : rgb_gray(0.0f);
+}
+
+bool projection_sample_numbers(const projection *p, vec3 direction, vec2 *out_u)
+{
+    uint32_t x, y;
+    vec2 within;
+    if (!find_pixel(p, direction, &x, &y, &within))
+        return false;
+    *out_u = distribution_2d_numbers(&p->picks, x, y, within);
+    return distribution_2d_probability(&p->picks, x, y) > 0.0f;
 }
 
 bool projection_sample(const projection *p, vec2 u, vec3 *out_direction, rgb *out_value, float *out_pdf_solid_angle)

@@ -25,6 +25,9 @@ void projection_destroy(projection *p); /* NULL is fine */
 rgb projection_value(const projection *p, vec3 direction);
 /* Samples a direction nearly in proportion to the pixels, by u in [0,1)^2. Returns false where they are all black. */
 bool projection_sample(const projection *p, vec2 u, vec3 *out_direction, rgb *out_value, float *out_pdf_solid_angle);
+/* Finds the numbers, up to rounding, by which projection_sample gives that direction. Returns false where it never
+ * does. */
+bool projection_sample_numbers(const projection *p, vec3 direction, vec2 *out_u);
 /* Returns the cosine between z and the corners. */
 float projection_corner_cosine(const projection *p);
 

@@ -36,11 +36,11 @@ static rgb intensity(const light *l, vec3 direction)
 }
 
 static bool emit(const scene *s, const light *l, const light_target *target, const emission_numbers *numbers,
-                 struct rng *random, light_emission *out)
+                 light_emission *out)
 {
     float pdf;
     vec3 local;
-    (void)s, (void)random;
+    (void)s;
     if (light_aim_point(l, target, 1.0f - projection_corner_cosine(l->as.projection.picture), numbers, out))
         return !rgb_is_black(out->flux);
     if (!projection_sample(l->as.projection.picture, numbers->direction, &local, &out->flux, &pdf))
@@ -48,6 +48,14 @@ static bool emit(const scene *s, const light *l, const light_target *target, con
     out->direction = vec3_normalize(frame_to_world(&l->as.projection.world_from_light, local));
     out->flux = rgb_scale(rgb_mul(l->as.projection.intensity, out->flux), 1.0f / pdf);
     return true;
+}
+
+static bool emission_numbers_of(const scene *s, const light *l, vec3 point, vec2 u, const light_sample *towards,
+                                emission_numbers *in_out)
+{
+    (void)s, (void)point, (void)u;
+    const vec3 local = frame_to_local(&l->as.projection.world_from_light, vec3_negate(towards->direction));
+    return projection_sample_numbers(l->as.projection.picture, local, &in_out->direction);
 }
 
 static void narrow_bounds(const scene *s, const light *l, light_bounds *b)
@@ -67,4 +75,5 @@ const light_type projection_light = {.init = init,
                                      .intensity = intensity,
                                      .sample_from_point = light_sample_of_point,
                                      .emit = emit,
+                                     .emission_numbers_of = emission_numbers_of,
                                      .narrow_bounds = narrow_bounds};

@@ -286,7 +286,7 @@ static void expect_found(const scene *s, const light_target *ball, const light_t
         light_emission e;
         emission_numbers numbers = emission_numbers_draw(&random);
         numbers.focus = focus;
-        if (!light_emit(s, &s->lights[0], NULL, &numbers, &random, &e))
+        if (!light_emit(s, &s->lights[0], NULL, &numbers, &e))
             continue;
         all += (double)e.flux.g / COUNT;
         square_all += (double)e.flux.g * (double)e.flux.g / COUNT;
@@ -410,7 +410,7 @@ static void expect_numbers_of_ways(const char *world, bool are_known, const ligh
                     numbers.direction.y < 1.0f && numbers.position.x >= 0.0f && numbers.position.x < 1.0f &&
                     numbers.position.y >= 0.0f && numbers.position.y < 1.0f && numbers.part >= 0.0f &&
                     numbers.part < 1.0f);
-        assert_true(light_emit(s, l, NULL, &numbers, &random, &e));
+        assert_true(light_emit(s, l, NULL, &numbers, &e));
         vec3 off = vec3_sub(point, e.origin);
         off = vec3_add_scaled(off, e.direction, -vec3_dot(off, e.direction));
         assert_true(vec3_length(off) < 2e-3f + 1e-5f * s->bounding_radius);
@@ -453,7 +453,9 @@ static void ways_to_lamps_tell_where_photons_begin(void **state)
          FLOOR, true},
         {"AttributeBegin Scale 1 .9 1 AreaLightSource \"diffuse\" Shape \"sphere\" AttributeEnd", FLOOR, true},
         {"LightSource \"point\"", FLOOR, true},
-        {"LightSource \"spot\"", FLOOR, false},
+        {"LightSource \"spot\" \"float coneangle\" 50 \"float conedeltaangle\" 20", FLOOR, true},
+        {"LightSource \"spot\" \"float coneangle\" 40 \"float conedeltaangle\" 0", FLOOR, true},
+        {"LightSource \"spot\" \"float coneangle\" 60 \"float conedeltaangle\" 60 \"bool cosine\" true", FLOOR, true},
     };
     char text[512];
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
