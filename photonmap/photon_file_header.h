@@ -7,7 +7,7 @@
 
 /* Raise this whenever the layout changes, or the tracing of photons where estimate_fingerprint does not see it: by
  * meshes, curves, pictures, and the pilot that aims them. A change of the estimates shows in that fingerprint. */
-enum { PHOTON_FILE_LAYOUT = 23 };
+enum { PHOTON_FILE_LAYOUT = 24 };
 enum {
     PHOTON_FILE_PAGE = 4096,
     PHOTON_FILE_OWNERS_AT = PHOTON_FILE_PAGE, /* the header has the first page */

@@ -181,55 +181,71 @@ static float pdf_from_point(const scene *s, const light *l, vec3 point, const su
 
 /* --- from the lamp --- */
 
-/* Whether photons start at a whole sphere by their direction in the world, and then by where they pass the centre: all
- * lines that meet a sphere are alike, and a guide of two numbers knows which directions are of use. */
+/* Photons of a whole sphere start by the direction of their line in the world, and by where it passes the centre: all
+ * lines that meet a sphere are alike, so that the direction's two numbers alone say where the light goes. */
 static bool starts_by_lines(const light *l, const shape *lamp) { return is_whole_sphere(lamp) && !l->as.area.map; }
 
-/* Where a line in that direction leaves the side of a whole sphere that shines. across: in the disc of radius 1. */
-static surface_sample sphere_start(const shape *lamp, vec3 direction, vec2 across, bool is_behind)
+static bool finish_emission(const scene *s, const light *l, const surface_sample *at, vec3 n, float weight,
+                            light_emission *out)
 {
-    float rise = sqrtf(fmaxf(1.0f - across.x * across.x - across.y * across.y, 0.0f));
-    frame f = frame_from_z(direction);
-    return sphere_point(lamp,
-                        frame_to_world(&f, (vec3){across.x, across.y, lamp->flip_normal != is_behind ? -rise : rise}));
+    const shape *lamp = &s->shapes[l->as.area.shape_index];
+    out->flux = rgb_scale(rgb_mul(l->as.area.radiance, lamp_sampled_value(s, l, at)), weight);
+    out->origin = vec3_add_scaled(at->position, n, at->epsilon);
+    out->medium = vec3_dot(n, at->geometric_normal) > 0.0f ? lamp->medium_outside : lamp->medium_inside;
+    return !rgb_is_black(out->flux);
+}
+
+/* Lines that meet both the sphere and the target make no larger angle than those from the centre to a target that is
+ * larger by the sphere's radius. */
+static bool emit_line(const scene *s, const light *l, const light_target *target, const emission_numbers *numbers,
+                      light_emission *out)
+{
+    const shape *lamp = &s->shapes[l->as.area.shape_index];
+    const quadric *q = &lamp->as.quadric;
+    const float r = q->uniform_radius;
+    light_target larger;
+    if (target)
+        larger = (light_target){target->center, target->radius + r};
+    float pdf = 1.0f / (4.0f * AG_PI);
+    if (!light_aim_at(target ? &larger : NULL, q->center, 2.0f, numbers->direction, &out->direction, &pdf))
+        out->direction = sample_uniform_sphere(numbers->direction);
+    const bool is_behind = l->as.area.two_sided && numbers->part < 0.5f, is_inward = lamp->flip_normal != is_behind;
+    const vec2 across = sample_disk_concentric(numbers->position);
+    const float rise = sqrtf(fmaxf(1.0f - across.x * across.x - across.y * across.y, 0.0f));
+    const frame f = frame_from_z(out->direction);
+    surface_sample at = sphere_point(lamp, frame_to_world(&f, vec3_make(across.x, across.y, is_inward ? -rise : rise)));
+    at.epsilon = q->epsilon;
+    const vec3 n = is_behind ? vec3_negate(at.geometric_normal) : at.geometric_normal;
+    return finish_emission(s, l, &at, n, AG_PI * r * r * (l->as.area.two_sided ? 2.0f : 1.0f) / pdf, out);
 }
 
 static bool emit(const scene *s, const light *l, const light_target *target, const emission_numbers *numbers,
                  light_emission *out)
 {
     const shape *lamp = &s->shapes[l->as.area.shape_index];
+    if (starts_by_lines(l, lamp))
+        return emit_line(s, l, target, numbers, out);
     vec2 u = numbers->position;
     float density = 1.0f, pdf;
     if (l->as.area.map && !radiance_map_sample(l->as.area.map, u, &u, &density))
         return false;
     surface_sample at = shape_sample_area(lamp, u);
-    const bool is_behind = l->as.area.two_sided && numbers->part < 0.5f;
     vec3 n = at.geometric_normal;
-    float weight;
     if (light_aim_at(target, at.position, 1.0f, numbers->direction, &out->direction, &pdf)) {
         float cosine = vec3_dot(n, out->direction);
         if (l->as.area.two_sided && cosine < 0.0f) {
             n = vec3_negate(n);
             cosine = -cosine;
         }
-        weight = fmaxf(cosine, 0.0f) / (at.pdf_area * density * pdf);
-    } else {
-        /* L cos / (pdf_area cos/pi): the same for every photon but on ellipsoids, and nearly so by a radiance map */
-        weight = AG_PI * (l->as.area.two_sided ? 2.0f : 1.0f) / (at.pdf_area * density);
-        if (starts_by_lines(l, lamp)) {
-            out->direction = sample_uniform_sphere(numbers->direction);
-            at = sphere_start(lamp, out->direction, sample_disk_concentric(u), is_behind);
-            n = is_behind ? vec3_negate(at.geometric_normal) : at.geometric_normal;
-        } else {
-            n = is_behind ? vec3_negate(n) : n;
-            frame f = frame_from_z(n);
-            out->direction = frame_to_world(&f, sample_cosine_hemisphere(numbers->direction));
-        }
+        return finish_emission(s, l, &at, n, fmaxf(cosine, 0.0f) / (at.pdf_area * density * pdf), out);
     }
-    out->flux = rgb_scale(rgb_mul(l->as.area.radiance, lamp_sampled_value(s, l, &at)), weight);
-    out->origin = vec3_add_scaled(at.position, n, at.epsilon);
-    out->medium = vec3_dot(n, at.geometric_normal) > 0.0f ? lamp->medium_outside : lamp->medium_inside;
-    return !rgb_is_black(out->flux);
+    if (l->as.area.two_sided && numbers->part < 0.5f)
+        n = vec3_negate(n);
+    frame f = frame_from_z(n);
+    out->direction = frame_to_world(&f, sample_cosine_hemisphere(numbers->direction));
+    /* L cos / (pdf_area cos/pi): the same for every photon but on ellipsoids, and nearly so by a radiance map */
+    float weight = AG_PI * (l->as.area.two_sided ? 2.0f : 1.0f) / (at.pdf_area * density);
+    return finish_emission(s, l, &at, n, weight, out);
 }
 
 static bool emission_numbers_of(const scene *s, const light *l, vec3 point, vec2 u, const light_sample *towards,

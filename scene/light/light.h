@@ -200,8 +200,8 @@ typedef struct emission_numbers {
 } emission_numbers;
 
 /* Samples a photon's start. target NULL: the whole light. Else only a part of the light that contains all rays which
- * meet the ball is sampled, as far as it is known, with its share of the flux (Jensen 1996: projection maps). Further
- * random numbers are drawn from the path's stream (math/rng.h). Returns false where the sample carries no flux. */
+ * meet the ball is sampled, as far as it is known, with its share of the flux (Jensen 1996: projection maps). Returns
+ * false where the sample carries no flux. */
 bool light_emit(const struct scene *s, const light *l, const light_target *target, const emission_numbers *numbers,
                 light_emission *out_emission);
 

@@ -78,10 +78,10 @@ static bool find_pixel(const projection *p, vec3 direction, uint32_t *out_x, uin
 {
     if (!(direction.z >= NEAR))
         return false;
-    float x = direction.x / direction.z / p->reach_x, y = direction.y / direction.z / p->reach_y;
-    if (!(fabsf(x) <= 1.0f && fabsf(y) <= 1.0f))
+    float right = direction.x / direction.z / p->reach_x, up = direction.y / direction.z / p->reach_y;
+    if (!(fabsf(right) <= 1.0f && fabsf(up) <= 1.0f))
         return false;
-    x = 0.5f * (1.0f + x) * (float)p->width, y = 0.5f * (1.0f - y) * (float)p->height;
+    float x = 0.5f * (1.0f + right) * (float)p->width, y = 0.5f * (1.0f - up) * (float)p->height;
     *out_x = (uint32_t)x < p->width ? (uint32_t)x : p->width - 1;
     *out_y = (uint32_t)y < p->height ? (uint32_t)y : p->height - 1;
     *out_within = (vec2){x - (float)*out_x, y - (float)*out_y};

@@ -71,8 +71,8 @@ static rgb power(const scene *s, const light *l)
     return rgb_scale(l->as.spot.intensity, 2.0f * AG_PI * (float)integral_to(l, (double)l->as.spot.falloff_end));
 }
 
-/* The height below which there is that share of the light. Forty halvings are exact to the last bit of a float, and
- * take little time beside the tracing of a photon. */
+/* The height below which there is that share of the light, by halving until a float tells no difference, or the cone's
+ * 2^-40 is reached; that takes little time beside the tracing of a photon. */
 static float height_of_share(const light *l, float share)
 {
     double low = 0.0, high = (double)l->as.spot.falloff_end;

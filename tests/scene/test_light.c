@@ -176,6 +176,35 @@ static void a_projection_is_upright(void **state)
     projection_destroy(p);
 }
 
+/* The numbers of a direction give that direction again, but where the picture is black, or ends. */
+static void numbers_of_a_projection_are_known(void **state)
+{
+    (void)state;
+    rgb *pixels = noise_pixels(5, 3, 1);
+    pixels[7] = rgb_gray(0.0f);
+    projection *p;
+    assert_int_equal(projection_create(5, 3, pixels, 70.0f, &p), AG_OK);
+    rng random = test_random(21);
+    uint32_t known = 0;
+    for (int i = 0; i < 1000; i++) {
+        vec3 direction = sample_uniform_cone(rng_vec2(&random), 0.6f), again;
+        vec2 u;
+        rgb value;
+        float pdf;
+        const bool is_lit = !rgb_is_black(projection_value(p, direction));
+        assert_int_equal(projection_sample_numbers(p, direction, &u), is_lit);
+        if (!is_lit)
+            continue;
+        assert_true(projection_sample(p, u, &again, &value, &pdf));
+        assert_true(vec3_distance_squared(direction, again) < 1e-10f);
+        known++;
+    }
+    assert_in_range(known, 200, 900);
+    vec2 u;
+    assert_false(projection_sample_numbers(p, vec3_make(0.0f, 0.0f, -1.0f), &u));
+    projection_destroy(p);
+}
+
 static void black_pictures_send_nothing(void **state)
 {
     (void)state;
@@ -205,6 +234,7 @@ int main(void)
         cmocka_unit_test(a_constant_goniometric_light_is_a_point),
         cmocka_unit_test(a_constant_projection),
         cmocka_unit_test(a_projection_is_upright),
+        cmocka_unit_test(numbers_of_a_projection_are_known),
         cmocka_unit_test(black_pictures_send_nothing),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

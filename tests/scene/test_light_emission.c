@@ -221,9 +221,9 @@ static bool meets_ball(const light_emission *e, const light_target *ball)
     return along > 0.0f && vec3_dot(beside, beside) <= ball->radius * ball->radius;
 }
 
-/* The flux through the ball is the same whether all of the light is sampled, or only what goes there; and what is aimed
- * carries it in far fewer photons. */
-static void expect_aimed_flux(const char *world, light_target ball)
+/* The flux through the ball is the same whether all of the light is sampled, or only what goes there; and of as many
+ * photons more than `times` as many meet it. */
+static void expect_aimed_flux(const char *world, light_target ball, double times)
 {
     test_run r;
     test_run_init(&r, 1);
@@ -244,7 +244,7 @@ static void expect_aimed_flux(const char *world, light_target ball)
         }
     }
     double variance = (square[0] - flux[0] * flux[0] + square[1] - flux[1] * flux[1]) / COUNT;
-    assert_true(met[1] > 5 * met[0]);
+    assert_true(met[1] > times * met[0]);
     assert_close(flux[0], flux[1], 5.0 * sqrt(variance));
     scene_destroy(s);
     test_run_reset(&r);
@@ -266,8 +266,21 @@ static void aimed_light_carries_the_same_flux(void **state)
     };
     for (size_t i = 0; i < sizeof LIGHTS / sizeof *LIGHTS; i++) {
         snprintf(text, sizeof text, "AttributeBegin %s AttributeEnd\nTranslate 0 0 -5 %s", LIGHTS[i], GROUND);
-        expect_aimed_flux(text, small);
+        expect_aimed_flux(text, small, 5.0);
     }
+    /* balls beside a lamp, of which its nearer points see too much to be aimed */
+    static const light_target NEAR[] = {
+        {{0.0f, 0.0f, 1.8f}, 1.0f}, {{0.0f, 0.0f, 1.0f}, 0.9f}, {{0.0f, 0.0f, 10.0f}, 9.0f}};
+    static const char *const LAMPS[] = {"Shape \"sphere\" \"float radius\" [0.7]",
+                                        "Shape \"disk\" \"float radius\" [0.7]"};
+    for (size_t i = 0; i < sizeof NEAR / sizeof *NEAR; i++)
+        for (size_t lamp = 0; lamp < sizeof LAMPS / sizeof *LAMPS; lamp++)
+            for (int two_sided = 0; two_sided < 2; two_sided++) {
+                snprintf(text, sizeof text,
+                         "AttributeBegin AreaLightSource \"diffuse\" %s %s AttributeEnd\nTranslate 0 0 -5 %s",
+                         two_sided ? "\"bool twosided\" true" : "", LAMPS[lamp], GROUND);
+                expect_aimed_flux(text, NEAR[i], 0.9);
+            }
 }
 
 /* The two lights from afar, whose irradiance across their directions is 4 pi times 2 and 2 in green. */
