@@ -182,7 +182,8 @@ static float pdf_from_point(const scene *s, const light *l, vec3 point, const su
 /* --- from the lamp --- */
 
 /* Photons of a whole sphere start by the direction of their line in the world, and by where it passes the centre: all
- * lines that meet a sphere are alike, so that the direction's two numbers alone say where the light goes. */
+ * lines that meet a sphere are alike, so that the direction's two numbers alone say where the light goes. Light that is
+ * aimed is not sent so: its direction is within the target's cone, and says which part of the target it meets. */
 static bool starts_by_lines(const light *l, const shape *lamp) { return is_whole_sphere(lamp) && !l->as.area.map; }
 
 static bool finish_emission(const scene *s, const light *l, const surface_sample *at, vec3 n, float weight,
@@ -195,36 +196,28 @@ static bool finish_emission(const scene *s, const light *l, const surface_sample
     return !rgb_is_black(out->flux);
 }
 
-/* Lines that meet both the sphere and the target make no larger angle than those from the centre to a target that is
- * larger by the sphere's radius. */
-static bool emit_line(const scene *s, const light *l, const light_target *target, const emission_numbers *numbers,
-                      light_emission *out)
+static bool emit_line(const scene *s, const light *l, const emission_numbers *numbers, light_emission *out)
 {
     const shape *lamp = &s->shapes[l->as.area.shape_index];
-    const quadric *q = &lamp->as.quadric;
-    const float r = q->uniform_radius;
-    light_target larger;
-    if (target)
-        larger = (light_target){target->center, target->radius + r};
-    float pdf = 1.0f / (4.0f * AG_PI);
-    if (!light_aim_at(target ? &larger : NULL, q->center, 2.0f, numbers->direction, &out->direction, &pdf))
-        out->direction = sample_uniform_sphere(numbers->direction);
+    const float r = lamp->as.quadric.uniform_radius;
+    out->direction = sample_uniform_sphere(numbers->direction);
     const bool is_behind = l->as.area.two_sided && numbers->part < 0.5f, is_inward = lamp->flip_normal != is_behind;
     const vec2 across = sample_disk_concentric(numbers->position);
     const float rise = sqrtf(fmaxf(1.0f - across.x * across.x - across.y * across.y, 0.0f));
     const frame f = frame_from_z(out->direction);
     surface_sample at = sphere_point(lamp, frame_to_world(&f, vec3_make(across.x, across.y, is_inward ? -rise : rise)));
-    at.epsilon = q->epsilon;
+    at.epsilon = lamp->as.quadric.epsilon;
     const vec3 n = is_behind ? vec3_negate(at.geometric_normal) : at.geometric_normal;
-    return finish_emission(s, l, &at, n, AG_PI * r * r * (l->as.area.two_sided ? 2.0f : 1.0f) / pdf, out);
+    const float lines = 4.0f * AG_PI * (AG_PI * r * r) * (l->as.area.two_sided ? 2.0f : 1.0f);
+    return finish_emission(s, l, &at, n, lines, out);
 }
 
 static bool emit(const scene *s, const light *l, const light_target *target, const emission_numbers *numbers,
                  light_emission *out)
 {
     const shape *lamp = &s->shapes[l->as.area.shape_index];
-    if (starts_by_lines(l, lamp))
-        return emit_line(s, l, target, numbers, out);
+    if (!target && starts_by_lines(l, lamp))
+        return emit_line(s, l, numbers, out);
     vec2 u = numbers->position;
     float density = 1.0f, pdf;
     if (l->as.area.map && !radiance_map_sample(l->as.area.map, u, &u, &density))
