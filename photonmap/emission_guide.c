@@ -259,7 +259,7 @@ emission_start emission_guide_sample(const emission_guide *guide, rng *random, f
         pick_leaf(is_other ? guide->other : guide, u, &where);
         for (int a = 0; a < EMISSION_DIMENSIONS; a++) {
             float end = where.low[a] + where.extent[a];
-            start.u[a] = fminf(where.low[a] + where.extent[a] * start.u[a], end * (1.0f - 0x1p-24f));
+            start.u[a] = float_min(where.low[a] + where.extent[a] * start.u[a], end * (1.0f - 0x1p-24f));
         }
     }
     *out_density = emission_guide_density(guide, &start);

@@ -105,9 +105,9 @@ static float component(vec3 v, int axis) { return axis == 0 ? v.x : axis == 1 ? 
 static void set_cube(vec3 low, vec3 high, importance_map *out)
 {
     vec3 extent = vec3_sub(high, low);
-    float largest = fmaxf(fmaxf(extent.x, extent.y), extent.z);
+    float largest = float_max(float_max(extent.x, extent.y), extent.z);
     /* a little larger, and with its corner a little off: what lies in the planes of walls falls on one side */
-    out->size = 1.03f * fmaxf(largest, 1e-6f * fmaxf(1.0f, vec3_length(high)));
+    out->size = 1.03f * float_max(largest, 1e-6f * float_max(vec3_length(high), 1.0f));
     out->corner = vec3_sub(low, (vec3){0.011f * out->size, 0.012f * out->size, 0.013f * out->size});
 }
 
@@ -176,8 +176,8 @@ ag_status importance_map_create(const query_point *points, uint32_t count, impor
     vec3 low = points[0].position, high = low;
     for (uint32_t i = 1; i < count; i++) {
         vec3 p = points[i].position;
-        low = (vec3){fminf(low.x, p.x), fminf(low.y, p.y), fminf(low.z, p.z)};
-        high = (vec3){fmaxf(high.x, p.x), fmaxf(high.y, p.y), fmaxf(high.z, p.z)};
+        low = (vec3){float_min(low.x, p.x), float_min(low.y, p.y), float_min(low.z, p.z)};
+        high = (vec3){float_max(high.x, p.x), float_max(high.y, p.y), float_max(high.z, p.z)};
     }
     AG_TRY(build(points, count, 1.0f / (float)count, false, low, high, out_importance));
     out_importance->focus = focus;

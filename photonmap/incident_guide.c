@@ -38,8 +38,8 @@ float incident_guide_warp_one(const incident_guide *guide, vec2 *in_out_u)
         bins[i] = h->begins[i][row.number];
     float y = row.low + in_out_u->y * (row.high - row.low);
     interval bin = find_interval(bins, row.high, y);
-    in_out_u->x = fminf(((float)row.number + (x - row.low) / (row.high - row.low)) * BIN_WIDTH, BELOW_ONE);
-    in_out_u->y = fminf(((float)bin.number + (y - bin.low) / (bin.high - bin.low)) * BIN_WIDTH, BELOW_ONE);
+    in_out_u->x = float_min(((float)row.number + (x - row.low) / (row.high - row.low)) * BIN_WIDTH, BELOW_ONE);
+    in_out_u->y = float_min(((float)bin.number + (y - bin.low) / (bin.high - bin.low)) * BIN_WIDTH, BELOW_ONE);
     return (float)(INCIDENT_ONE / INCIDENT_BINS) / (bin.high - bin.low);
 }
 

@@ -158,7 +158,7 @@ static void add_photon(const job *j, uint32_t photon_index, kept_normal *f, floa
     vec2 u = square_from_disk(-vec3_dot(going, f->around.x), -vec3_dot(going, f->around.y));
     rgb carried = flux_decode(photon_block_flux(blocks, photon_index));
     flux[f->face][incident_guide_bin(u.x) * INCIDENT_SIDE + incident_guide_bin(u.y)] +=
-        fminf(carried.r + carried.g + carried.b, FLUX_MAX);
+        float_min(carried.r + carried.g + carried.b, FLUX_MAX);
     counts[f->face]++;
 }
 

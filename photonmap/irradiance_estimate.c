@@ -142,8 +142,8 @@ static const float REGION_SHARE_MIN = 0.2f, REGION_PHOTONS_MIN = 10.0f;
 
 static bool region_holds(const photon_map *map, double area, float radius)
 {
-    float share_min = fminf(fmaxf(REGION_SHARE_MIN, REGION_PHOTONS_MIN / (float)map->nearest), 1.0f);
-    float least_radius = fminf(radius, map->mean_radius);
+    float share_min = float_min(float_max(REGION_PHOTONS_MIN / (float)map->nearest, REGION_SHARE_MIN), 1.0f);
+    float least_radius = float_min(radius, map->mean_radius);
     return area >= (double)share_min * (double)AG_PI * (double)least_radius * (double)least_radius;
 }
 
@@ -171,7 +171,7 @@ static float find_disc(const photon_map *map, photon_found *found, bool *out_has
         radius_squared = found->limit;
         photon_found_forget(found, found->farthest);
     }
-    return fmaxf(radius_squared, map->min_radius_squared);
+    return float_max(radius_squared, map->min_radius_squared);
 }
 
 /* The photons that are seen below a step. */
@@ -252,7 +252,7 @@ static irradiance_extent fit_to_surface(const photon_map *map, const clear_space
     }
     if (holds || least_area > 0.0) {
         *in_out_sums = inside;
-        *in_out_area = holds ? area : fmax(area, least_area);
+        *in_out_area = holds ? area : double_max(area, least_area);
     }
     if (!holds)
         return IRRADIANCE_HOLDS_NOWHERE;
@@ -319,7 +319,7 @@ static irradiance_extent find(const photon_map *map, vec3 position, vec3 normal,
 
     /* as far as it has the light of its middle */
     if (leave_brighter_rim(&found, &radius_squared)) {
-        radius_squared = fmaxf(radius_squared, map->min_radius_squared);
+        radius_squared = float_max(radius_squared, map->min_radius_squared);
         disc = make_disc(map, space, position, normal, radius_squared);
         sum_own_surface(map, &disc, &found, &steps, in_out_rays, &sums);
     }

@@ -96,7 +96,7 @@ static vec3 nearest_point(const line *lines, uint32_t count, vec3 around, float 
         if (!(passing_angle(&lines[i], around, &distance) <= angle))
             continue;
         vec3 at = vec3_sub(lines[i].at, origin), to = vec3_sub(around, lines[i].at);
-        const double weight = 1.0 / fmax((double)vec3_dot(to, to), 1e-30),
+        const double weight = 1.0 / double_max((double)vec3_dot(to, to), 1e-30),
                      x[3] = {(double)at.x, (double)at.y, (double)at.z};
         const double d[3] = {(double)lines[i].direction.x, (double)lines[i].direction.y, (double)lines[i].direction.z};
         for (int r = 0; r < 3; r++)
@@ -211,7 +211,7 @@ static void set_cones(vec3 to, float distance, float radius, onward_guide *out)
 {
     float share = 1.0f, sum = 0.0f;
     out->towards = frame_from_z(vec3_scale(to, 1.0f / distance));
-    float sine = fmaxf(radius / distance, CONE_SINE_MIN);
+    float sine = float_max(radius / distance, CONE_SINE_MIN);
     for (; out->cone_count < ONWARD_CONES_MAX && sine <= CONE_SINE_MAX; sine *= 2.0f) {
         uint32_t i = out->cone_count++;
         out->sine_squared[i] = sine * sine;
@@ -268,6 +268,6 @@ float onward_guide_gain(const onward_guide *guide)
         return 1.0f;
     /* a cone may be mostly below the surface: the part above has about its own sine as cosine */
     float cosine =
-        fmaxf(vec3_dot(guide->towards.z, guide->by_histogram.around.z), 0.5f * sqrtf(guide->sine_squared[0]));
-    return fmaxf(onward_guide_density(guide, guide->towards.z) * AG_PI / cosine, 1.0f);
+        float_max(vec3_dot(guide->towards.z, guide->by_histogram.around.z), 0.5f * sqrtf(guide->sine_squared[0]));
+    return float_max(onward_guide_density(guide, guide->towards.z) * AG_PI / cosine, 1.0f);
 }

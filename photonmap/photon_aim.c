@@ -60,7 +60,7 @@ static ag_status set_split(learner *l, const emission_trial *trials, uint32_t co
         float by_worth = SPLIT_RATIO * worths[(uint32_t)(LOW_PERCENTILE * (float)useful)];
         float by_parts = l->split_above * (float)parts / (PARTS_PER_PATH * (float)count);
         float least = l->round == last_round(l) - 1 ? l->split_above : l->split_above * SPLIT_STEP;
-        l->split_above = fmaxf(fmaxf(by_worth, by_parts), least);
+        l->split_above = float_max(float_max(by_worth, by_parts), least);
     }
     free(worths);
     return AG_OK;
@@ -73,7 +73,7 @@ static const double PATHS_PER_PHOTON = 4.0, STORED_SHARE_LEAST = 0.25;
 static float stored_share(uint64_t paths, double stored)
 {
     double share = stored > 0.0 ? (double)paths / (PATHS_PER_PHOTON * stored) : 1.0;
-    return (float)fmin(fmax(share, STORED_SHARE_LEAST), 1.0);
+    return (float)double_min(double_max(share, STORED_SHARE_LEAST), 1.0);
 }
 
 static float caustic_root(const learner *l)
@@ -217,7 +217,7 @@ enum { WANTED_LEAST = 20000 };
 static uint32_t wanted_by_power(const trial_counts *unguided, uint32_t wanted)
 {
     double stored = (double)unguided->photons / (double)unguided->paths * PHOTON_PATHS_MAX * wanted;
-    double most = fmax(stored, WANTED_LEAST);
+    double most = double_max(stored, WANTED_LEAST);
     return most < (double)wanted ? (uint32_t)most : wanted;
 }
 

@@ -98,7 +98,7 @@ static void evaluate_surface(const photon_arrival *at, bsdf_lobes lobes, vec3 di
     if (at->albedo) {
         vec3 normal = vec3_face_forward(at->hit.geometric_normal, vec3_negate(at->arrived));
         out_next->weight = rgb_scale(*at->albedo, lambert_arrival_factor(&at->hit, at->arrived));
-        out_next->pdf_solid_angle = fmaxf(vec3_dot(direction, normal), 0.0f) * AG_INV_PI;
+        out_next->pdf_solid_angle = float_max(vec3_dot(direction, normal), 0.0f) * AG_INV_PI;
         return;
     }
     float pdf = bsdf_pdf(&at->scattering, lobes, BSDF_FLUX, direction);

@@ -67,7 +67,7 @@ void photon_found_keep_nearest(const disc_kernels *kernels, photon_found *found,
     float low = -1.0f, high = found->limit;
     uint32_t low_count = 0, high_count = found->count; /* that are no farther */
     for (int round = 0; round < ROUNDS && high_count - low_count > COMPARED; round++) {
-        float begin = fmaxf(low, 0.0f), each = (high - begin) / (float)(high_count - low_count);
+        float begin = float_max(low, 0.0f), each = (high - begin) / (float)(high_count - low_count);
         float middle = begin + each * ((float)(wanted - low_count) - 0.5f), aside = each * (float)ASIDE;
         const float most[DISC_COUNTS] = {middle - aside, middle, middle + aside};
         uint32_t within[DISC_COUNTS];

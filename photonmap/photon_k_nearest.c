@@ -113,7 +113,7 @@ void photon_found_search_by(const disc_kernels *kernels, photon_found *found, co
     float largest = radius * radius, limit = HINT_MARGIN * hint->radius_squared;
     if (!(vec3_distance_squared(hint->position, position) < HINT_NEAR * hint->radius_squared))
         limit = guess_radius_squared(&q, leaf, wanted, largest);
-    limit = fminf(limit, largest);
+    limit = float_min(limit, largest);
     for (;;) {
         found->leaf_count = found->count = 0;
         found->limit = limit;
@@ -123,7 +123,7 @@ void photon_found_search_by(const disc_kernels *kernels, photon_found *found, co
             break;
         /* too few: by how many tells how much farther to look, the better the more there are */
         float margin = found->count > wanted / 2 ? 1.15f : 1.3f;
-        limit = fminf(limit * fminf(4.0f, margin * (float)wanted / (float)(found->count + 1)), largest);
+        limit = float_min(limit * float_min(margin * (float)wanted / (float)(found->count + 1), 4.0f), largest);
     }
     if (found->other_squared > found->limit)
         found->other_squared = INFINITY; /* what is known beyond the limit depends on where the search began */

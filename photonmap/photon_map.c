@@ -39,11 +39,11 @@ static ag_status bound_radii(photon_map *map)
     float radius[PHOTON_SURVEY_MAX];
     uint32_t count;
     AG_TRY(photon_survey(map, radius_at, radius, &count));
-    float median = fmaxf(radius[count / 2], LEAST_MEDIAN * map->max_radius);
+    float median = float_max(radius[count / 2], LEAST_MEDIAN * map->max_radius);
     if (map->is_steady)
         median = quarter_octave_nearest(median);
-    map->mean_radius = fminf(map->mean_radius, MEDIAN_FACTOR * median);
-    map->max_radius = fminf(map->max_radius, RADIUS_FACTOR * map->mean_radius);
+    map->mean_radius = float_min(map->mean_radius, MEDIAN_FACTOR * median);
+    map->max_radius = float_min(map->max_radius, RADIUS_FACTOR * map->mean_radius);
     return AG_OK;
 }
 
@@ -76,14 +76,14 @@ float photon_map_largest_radius(const photon_map_settings *settings, uint32_t co
     if (settings->max_radius > 0.0f)
         return settings->max_radius;
     float radius = RADIUS_FACTOR * even_radius(settings, count);
-    return settings->radius_bound > 0.0f ? fminf(radius, settings->radius_bound) : radius;
+    return settings->radius_bound > 0.0f ? float_min(radius, settings->radius_bound) : radius;
 }
 
 /* Sets the radii that follow from the settings, and from the density of photons on the scene's area. */
 static void set_radii(photon_map *map, const photon_map_settings *settings)
 {
     map->max_radius = photon_map_largest_radius(settings, map->set.count);
-    map->mean_radius = fminf(even_radius(settings, map->set.count), map->max_radius);
+    map->mean_radius = float_min(even_radius(settings, map->set.count), map->max_radius);
 }
 
 /* Builds the tree from the set's records, which become the blocks; and what estimates and lookups need of it. */
@@ -130,7 +130,7 @@ static ag_status set_units(const run_context *run, photon_map *map)
      * exponent. */
     double largest = 255.0 * ldexp(1.0, map->flux_exponent_max) * (map->nearest + 1.0) /
                      ((double)map->set.emitted_paths * (double)AG_PI * (double)map->min_radius_squared);
-    photon_map_derive(map, shared_exponent_of((float)fmin(largest, 1e38)) - 63);
+    photon_map_derive(map, shared_exponent_of((float)double_min(largest, 1e38)) - 63);
     return AG_OK;
 }
 

@@ -127,8 +127,9 @@ void photon_walk_nearest_many(photon_walk *walk, const photon_lookup *lookups, u
         alone[alone_count] = i;
         alone_count += has_none;
         /* beyond a plane at infinity there is nothing */
-        most[i] = has_none ? -1.0f
-                           : fminf(photon_query_hair_beyond(photon_neighbor_distance_squared(out_nearest[i])), FLT_MAX);
+        most[i] = has_none
+                      ? -1.0f
+                      : float_min(photon_query_hair_beyond(photon_neighbor_distance_squared(out_nearest[i])), FLT_MAX);
     }
     if (find_other_leaves(walk, lookups, count, &points, &found, &leaves)) {
         kernels->scan(tree->blocks, &points, &leaves, &found, distances);

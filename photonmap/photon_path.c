@@ -137,7 +137,7 @@ static bool pass_media(energy_balance *balance, rgb weight, rng *random, rgb *in
     count_flux(balance->absorbed, rgb_sub(flux, left));
     if (rgb_is_black(left))
         return false;
-    float survival = fminf(1.0f, rgb_max(left) / rgb_max(flux));
+    float survival = float_min(rgb_max(left) / rgb_max(flux), 1.0f);
     if (rng_float(random) >= survival) {
         count_flux(balance->lost, left);
         return false;
@@ -153,7 +153,7 @@ static float photon_width(const scene *s, const photon_tracing_settings *setting
 {
     static const float RADIUS_SHARE_MAX = 1.0f / 64.0f;
     float radius = s->detail_radius > 0.0f ? s->detail_radius : s->bounding_radius;
-    float width = fminf(sqrtf(s->surface_area / (float)settings->wanted), RADIUS_SHARE_MAX * radius);
+    float width = float_min(sqrtf(s->surface_area / (float)settings->wanted), RADIUS_SHARE_MAX * radius);
     return settings->paths > 0 ? quarter_octave_nearest(width) : width;
 }
 
@@ -261,7 +261,7 @@ static float root_of_onward_importance(const photon_tracer *t, const photon_arri
     surface_rest rest = photon_arrival_rest(t->s, at);
     float importance = importance_map_at(settings->onward, rest.position, rest.geometric_normal);
     if (at->guided_share > 0.0f)
-        importance /= fmaxf(at->guided_share * onward_guide_gain(&at->onward), 1.0f);
+        importance /= float_max(at->guided_share * onward_guide_gain(&at->onward), 1.0f);
     return sqrtf(importance);
 }
 
@@ -279,10 +279,10 @@ static uint32_t count_parts(const photon_tracer *t, const photon_path *path, con
         float flux = gain * (path->flux.r + path->flux.g + path->flux.b);
         if (t->trial)
             flux /= t->trial->density;
-        parts = fmaxf(parts, flux * root_of_onward_importance(t, at) / settings->split_above);
+        parts = float_max(parts, flux * root_of_onward_importance(t, at) / settings->split_above);
     }
     float most = SPLIT_MOST * path->share;
-    return !(parts > 1.0f) ? 1 : (uint32_t)fmaxf(fminf(parts + 0.5f, most), 1.0f);
+    return !(parts > 1.0f) ? 1 : (uint32_t)float_max(float_min(parts + 0.5f, most), 1.0f);
 }
 
 /* Returns one of the parts, which are equally bright, with random numbers of its own. */

@@ -13,7 +13,7 @@ static const float STEADY_ASKED = 192.0f;
 /* The next photon to ask, from `index` on; count: there is none. */
 static uint32_t next_steady(const photon_map *map, uint32_t index)
 {
-    const double share = fmin((double)STEADY_ASKED / (double)quarter_octave_nearest((float)map->set.count), 1.0);
+    const double share = double_min((double)STEADY_ASKED / (double)quarter_octave_nearest((float)map->set.count), 1.0);
     const uint64_t most = (uint64_t)(share * 0x1p32);
     while (index < map->set.count && photon_block_position_key(map->blocks, index) >> 32 >= most)
         index++;

@@ -195,7 +195,7 @@ static void divide_balance(energy_balance *balance, uint64_t paths)
 static double share_done(const photon_tracing_settings *settings, const photon_set *set, uint64_t next_path)
 {
     double done = (double)set->count / settings->wanted;
-    return settings->paths > 0 ? fmax(done, (double)next_path / (double)settings->paths) : done;
+    return settings->paths > 0 ? double_max(done, (double)next_path / (double)settings->paths) : done;
 }
 
 /* Traces rounds until the set is full, all paths have been emitted, or there is no point in going on. blocks: those of

@@ -110,7 +110,7 @@ static void split_node(const run_context *run, photon_tree *tree, photon *p, uin
         tree->nodes[node] = (photon_tree_node){INFINITY, 0};
         return;
     }
-    /* the fourth lane is what follows the position, and is not looked at; fminf would be a call each */
+    /* the fourth lane is what follows the position, and is not looked at */
     float4 low = {INFINITY, INFINITY, INFINITY, INFINITY}, high = -low;
     for (uint32_t i = r.low; i < r.high; i++) {
         if ((i & CANCEL_MASK) == 0 && run_is_cancelled(run))
@@ -124,7 +124,7 @@ static void split_node(const run_context *run, photon_tree *tree, photon *p, uin
     }
     float size = 0.0f;
     for (int a = 0; a < 3; a++)
-        size = fmaxf(size, fmaxf(fabsf(low[a]), fabsf(high[a])));
+        size = float_max(size, float_max(fabsf(low[a]), fabsf(high[a])));
     /* across the longest way that does not lie in a surface; where all do, across the longest */
     const float extent[3] = {high[0] - low[0], high[1] - low[1], high[2] - low[2]};
     uint32_t axes[4], tried = 0;

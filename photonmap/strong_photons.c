@@ -45,7 +45,7 @@ static bool find_ground(divider *d, const photon *p, photon_ground *out)
     const scene_ray up = scene_ray_make(vec3_add_scaled(position, normal, lift), normal);
     d->rays++;
     bool is_gap = scene_find_surface(d->s, up, reach / GAP_SHARE, &over);
-    float height = is_gap ? fmaxf(GAP_SHARE * over.distance, lift) : reach;
+    float height = is_gap ? float_max(GAP_SHARE * over.distance, lift) : reach;
     *out = (photon_ground){.position = position,
                            .normal = normal,
                            .shape = foot.shape_index,

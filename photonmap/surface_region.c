@@ -149,7 +149,7 @@ static bool is_of_same_level(const probe *p)
 /* Returns what meet_below does, without a ray where the clear space tells the answer. */
 static bool find_below(const probe *p, vec3 tangent, float lateral, below *out)
 {
-    float farthest = p->lift + sqrtf(fmaxf(0.0f, p->radius * p->radius - lateral * lateral));
+    float farthest = p->lift + sqrtf(float_max(p->radius * p->radius - lateral * lateral, 0.0f));
     *out = (below){0};
     return (p->space && is_of_same_level(p) &&
             clear_space_ends_ray(p->s, p->space, start_of_probe(p, tangent, lateral), vec3_negate(p->normal), farthest,
@@ -176,8 +176,8 @@ static vec3 find_bend(const probe *p, vec3 tangent, float lateral, const below *
     if (fabsf(slope) < FLAT_SLOPE || !(length > FLAT_SLOPE))
         return flat;
     /* the drop is along the tangent, the bend along the tilt */
-    float along = fmaxf(fabsf(vec3_dot(tilt, tangent)) / length, ALONG_LEAST);
-    float half = fminf(fabsf(slope) / along, HALF_BEND_MOST), sine = 2.0f * half / (1.0f + half * half);
+    float along = float_max(fabsf(vec3_dot(tilt, tangent)) / length, ALONG_LEAST);
+    float half = float_min(fabsf(slope) / along, HALF_BEND_MOST), sine = 2.0f * half / (1.0f + half * half);
     return vec3_scale(tilt, sine / (length * lateral));
 }
 
@@ -191,7 +191,7 @@ static float find_extent(const probe *p, vec3 tangent, vec3 *out_bend)
         p->space && clear_space_has_line(p->s, p->space, p->above, vec3_add_scaled(p->above, tangent, p->radius));
     if (!is_free && find_surface(p, p->above, tangent, p->radius, &hit)) {
         end = is_alike(&hit, p->normal, tangent, p->min_cos) ? p->radius : hit.distance;
-        high = fminf(high, PROBE_BEFORE * hit.distance);
+        high = float_min(high, PROBE_BEFORE * hit.distance);
     }
     below last, found;
     if (find_below(p, tangent, high, &last)) {
@@ -326,8 +326,8 @@ static bool fill_region(probe *p, bool may_be_empty, surface_region *r)
             p, vec3_add_scaled(vec3_scale(r->x, SURFACE_REGION_BOUND[i][0]), r->y, SURFACE_REGION_BOUND[i][1]), &bend);
         r->bend[i][0] = vec3_dot(bend, r->x);
         r->bend[i][1] = vec3_dot(bend, r->y);
-        r->nearest_end = fminf(r->nearest_end, extent[i]);
-        extent[i] = fmaxf(extent[i], SHORTEST * p->radius);
+        r->nearest_end = float_min(r->nearest_end, extent[i]);
+        extent[i] = float_max(extent[i], SHORTEST * p->radius);
     }
     if (r->nearest_end >= p->radius && !may_be_empty && !r->has_steps)
         return false;

@@ -24,7 +24,7 @@ static double area_of_arc(const surface_region *region, int octant, const float 
     split_by_bounds(octant, at, parts);
     const float *first = region->bend[octant], *second = region->bend[(octant + 1) % SURFACE_REGION_OCTANTS];
     float x = parts[0] * first[0] + parts[1] * second[0], y = parts[0] * first[1] + parts[1] * second[1];
-    float cosine = sqrtf(1.0f - fminf(x * x + y * y, SINE_SQUARED_MOST));
+    float cosine = sqrtf(1.0f - float_min(x * x + y * y, SINE_SQUARED_MOST));
     return 2.0 / (1.0 + (double)cosine);
 }
 
@@ -71,14 +71,15 @@ static double octant_area(const surface_region *region, int octant, float radius
         return whole;
     /* along the chord, from its point nearest to the centre: where the bounds meet it, and where the rim does */
     float height = 1.0f / sqrtf(square), along[2] = {-b * height, a * height};
-    float rim = sqrtf(fmaxf(0.0f, radius * radius - height * height)); /* rounded, the height may be above the radius */
+    float rim =
+        sqrtf(float_max(radius * radius - height * height, 0.0f)); /* rounded, the height may be above the radius */
     float at_u = a * u[0] + b * u[1], at_v = a * v[0] + b * v[1];
     float begin = at_u > 0.0f ? (along[0] * u[0] + along[1] * u[1]) / at_u : -INFINITY;
     float end = at_v > 0.0f ? (along[0] * v[0] + along[1] * v[1]) / at_v : INFINITY;
     const bool is_cut_first = begin < -rim;
     const bool is_cut_last = rim < end;
-    begin = fmaxf(begin, -rim);
-    end = fminf(end, rim);
+    begin = float_max(begin, -rim);
+    end = float_min(end, rim);
     if (!(begin < end))
         return whole;
     const float foot[2] = {a * height * height, b * height * height};

@@ -71,7 +71,7 @@ static surroundings look_around(const scene *s, vec3 position)
         facing += vec3_dot(hit.geometric_normal, direction) < 0.0f;
         on_bounds += is_on_bounds(s, hit.position);
         squares += (double)square;
-        r.nearest = fminf(r.nearest, sqrtf(square));
+        r.nearest = float_min(r.nearest, sqrtf(square));
     }
     if (met == 0)
         return r;
@@ -138,7 +138,7 @@ static void find_heading(const scene *s, vec3 eye, view *best)
     for (int i = 0; i < HEADINGS; i++) { /* free on both sides as well: 22 degrees */
         float sum = 0.0f;
         for (int k = -2; k <= 2; k++)
-            sum += fmaxf(distances[(i + k + HEADINGS) % HEADINGS], 0.0f);
+            sum += float_max(distances[(i + k + HEADINGS) % HEADINGS], 0.0f);
         if (0.2f * sum > best->distance)
             *best = (view){eye, headings[i], 0.2f * sum};
     }
@@ -215,7 +215,7 @@ static view own_view(const scene *s, bool has_outer)
     const surroundings around = look_around(s, v.eye);
     if (is_room(&around, has_outer)) {
         v.heading = vec3_normalize(vec3_make((float)m[0][2], (float)m[1][2], (float)m[2][2]));
-        v.distance = fmaxf(free_distance(s, v.eye, v.heading), 0.0f);
+        v.distance = float_max(free_distance(s, v.eye, v.heading), 0.0f);
     }
     return v;
 }

@@ -273,7 +273,7 @@ static bool is_in_reach_of_instance(const affine *world_from_object, vec3 center
     const vec3 axes[3] = {{1.0f, 0.0f, 0.0f}, {0.0f, 1.0f, 0.0f}, {0.0f, 0.0f, 1.0f}};
     float reach = vec3_max_abs(instance_point_in_object(world_from_object, at));
     for (int i = 0; i < 3; i++) /* directions too */
-        reach += fmaxf(radius, 1.0f) * vec3_max_abs(instance_direction_in_object(world_from_object, axes[i]));
+        reach += float_max(radius, 1.0f) * vec3_max_abs(instance_direction_in_object(world_from_object, axes[i]));
     return reach <= REACH_MAX;
 }
 
@@ -286,7 +286,7 @@ static float find_eye_distance(const camera *c, vec3 from)
         const vec3 eye = transform_point(&at, (vec3){0.0f, 0.0f, 0.0f});
         if (!(vec3_max_abs(eye) <= REACH_MAX) || !vec3_is_finite(eye))
             return INFINITY;
-        distance = fmaxf(distance, vec3_length(vec3_sub(eye, from)));
+        distance = float_max(distance, vec3_length(vec3_sub(eye, from)));
     }
     return distance;
 }
@@ -299,7 +299,7 @@ ag_status scene_check_camera(const scene *s, const camera *c, log_sink *log)
         return AG_ERROR_SCENE;
     }
     /* light from afar starts within twice the radius of the bounds */
-    const float radius = fmaxf(2.0f * s->bounding_radius, away);
+    const float radius = float_max(2.0f * s->bounding_radius, away);
     for (uint32_t i = 0; i < s->instance_count; i++)
         for (uint32_t k = 0; k < s->instances[i].step_count; k++)
             if (!is_in_reach_of_instance(&s->instance_steps[s->instances[i].first_step + k], s->bounding_center,
@@ -322,7 +322,7 @@ static ag_status find_bounds(scene *s, log_sink *log)
         return AG_OK;
     }
     /* instances: the reader has checked the shapes' own bounds */
-    if (s->instance_count > 0 && !(fmaxf(vec3_max_abs(s->bounds_min), vec3_max_abs(s->bounds_max)) <= REACH_MAX)) {
+    if (s->instance_count > 0 && !(float_max(vec3_max_abs(s->bounds_min), vec3_max_abs(s->bounds_max)) <= REACH_MAX)) {
         log_message(log, AG_LOG_ERROR, "an instance reaches beyond 1e18 units in world space");
         return AG_ERROR_SCENE;
     }

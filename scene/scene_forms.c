@@ -165,7 +165,7 @@ bool scene_difference_is_near(const scene_difference *d, vec3 point, float dista
     for (uint32_t i = 0; i < d->count; i++) {
         const scene_box *b = &d->boxes[i];
         vec3 nearest = vec3_max(b->low, vec3_min(point, b->high));
-        float hair = HAIR * fmaxf(vec3_max_abs(b->low), vec3_max_abs(b->high));
+        float hair = HAIR * float_max(vec3_max_abs(b->low), vec3_max_abs(b->high));
         float reach = sqrtf(distance_squared) + hair;
         if (!(vec3_distance_squared(nearest, point) > reach * reach))
             return true;

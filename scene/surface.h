@@ -65,7 +65,7 @@ static inline vec3 surface_point_behind(vec3 position, vec3 normal, float epsilo
 {
     static const float COSINE_MIN = 0.125f;
     vec3 n = vec3_face_forward(normal, direction);
-    float cosine = vec3_dot(n, direction), step = epsilon / fmaxf(cosine, COSINE_MIN);
+    float cosine = vec3_dot(n, direction), step = epsilon / float_max(cosine, COSINE_MIN);
     vec3 behind = vec3_add_scaled(position, direction, step);
     return cosine < COSINE_MIN ? vec3_add_scaled(behind, n, epsilon - step * cosine) : behind;
 }

@@ -148,6 +148,6 @@ void cryptomatte_rank(const cryptomatte_slot *slots, int rank, int64_t total, fl
         if (before != rank || slots[i].signed_count <= 0 || total <= 0)
             continue;
         memcpy(out_id, &slots[i].hash, sizeof *out_id);
-        *out_coverage = fminf((float)((double)slots[i].signed_count / (double)total), 1.0f);
+        *out_coverage = float_min((float)((double)slots[i].signed_count / (double)total), 1.0f);
     }
 }

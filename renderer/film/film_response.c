@@ -39,7 +39,7 @@ rgb film_response_bound(const film_response *response, rgb radiance)
 {
     double xyz[3] = {radiance.r, radiance.g, radiance.b};
     color_matrix_apply(&response->xyz_from_rgb, xyz, xyz);
-    double largest = fmax(xyz[0], fmax(xyz[1], xyz[2]));
+    double largest = double_max(xyz[0], double_max(xyz[1], xyz[2]));
     return largest > response->max_component ? rgb_scale(radiance, (float)(response->max_component / largest))
                                              : radiance;
 }

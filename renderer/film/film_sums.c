@@ -149,7 +149,7 @@ double film_sums_variance(const ag_film *film, size_t pixel, const film_channel 
         return 0.0;
     double sum = total(film, pixel, developed + channel->component), mean = sum / count;
     double squares = total(film, pixel, channel->offset + channel->component);
-    double variance = fmax(squares - sum * mean, 0.0) / (count - 1.0);
+    double variance = double_max(squares - sum * mean, 0.0) / (count - 1.0);
     if (!is_relative)
         return variance;
     return mean != 0.0 ? variance / mean : 0.0; /* as pbrt: over the mean, not its square */
@@ -163,7 +163,7 @@ void film_read_noise(const ag_film *film, size_t pixel, double *out_mean, double
         double sum = total(film, pixel, offset[SUM_DEVELOPED] + c);
         double squares = total(film, pixel, offset[SUM_SQUARES] + c);
         mean += sum / count;
-        variance += fmax(squares - sum * sum / count, 0.0) / ((count - 1.0) * count);
+        variance += double_max(squares - sum * sum / count, 0.0) / ((count - 1.0) * count);
     }
     *out_mean = mean / 3.0;
     *out_variance = variance / 3.0;

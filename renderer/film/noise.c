@@ -89,13 +89,13 @@ void noise_lattice_add(noise_lattice *lattice, const film_response *response, si
 double noise_shown_variance(double mean, double variance)
 {
     /* d sqrt(x) = dx / (2 sqrt(x)); above white d ln(x) / 2, which has the same slope there */
-    return 0.25 * variance / (fmax(mean, DARKEST) * fmax(mean, 1.0));
+    return 0.25 * variance / (double_max(mean, DARKEST) * double_max(mean, 1.0));
 }
 
 /* The variance of the mean of so many samples. */
 static double variance_of_mean(double count, double sum, double squares)
 {
-    return fmax(squares - sum * sum / count, 0.0) / ((count - 1.0) * count);
+    return double_max(squares - sum * sum / count, 0.0) / ((count - 1.0) * count);
 }
 
 noise_summary noise_lattice_read(const noise_lattice *lattice, double scale, int caustic_nearest)

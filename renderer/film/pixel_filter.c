@@ -27,10 +27,10 @@ static double filter_value(const filter_hint *f, double x, double radius)
     double sigma = (double)f->sigma;
     switch (f->kind) {
     case FILTER_BOX: return 1.0;
-    case FILTER_TRIANGLE: return fmax(0.0, radius - fabs(x));
+    case FILTER_TRIANGLE: return double_max(radius - fabs(x), 0.0);
     case FILTER_GAUSSIAN:
         /* pbrt takes away the value at the edge */
-        return fmax(0.0, exp(-x * x / (2.0 * sigma * sigma)) - exp(-radius * radius / (2.0 * sigma * sigma)));
+        return double_max(exp(-x * x / (2.0 * sigma * sigma)) - exp(-radius * radius / (2.0 * sigma * sigma)), 0.0);
     case FILTER_MITCHELL: return mitchell(2.0 * x / radius, (double)f->b, (double)f->c);
     case FILTER_SINC: return sinc(x) * sinc(x / (double)f->tau);
     }

@@ -97,7 +97,7 @@ static const float COST_INTO_FILM = 16.0f, FURTHER_COST_MIN = 8.0f;
 static float cost_of_further(const eye_sample *sample, uint32_t further)
 {
     return further > 0 ? (float)sample->further_cost / (float)further
-                       : fmaxf((float)sample->rest_cost - COST_INTO_FILM, FURTHER_COST_MIN);
+                       : float_max((float)sample->rest_cost - COST_INTO_FILM, FURTHER_COST_MIN);
 }
 
 void split_sums_add(split_sums *sums, const eye_sample *sample)

@@ -49,7 +49,7 @@ typedef struct choice {
 /* Returns the variance of a sum over samples. */
 static double variance_of(float sum, float squares, double count)
 {
-    return fmax((double)squares - (double)sum * (double)sum / count, 0.0) / (count - 1.0);
+    return double_max((double)squares - (double)sum * (double)sum / count, 0.0) / (count - 1.0);
 }
 
 /* Adds a pixel that has had so many samples, two or more. */
@@ -86,9 +86,10 @@ typedef struct camera_part {
  * cost: of all but the camera rays beyond one. */
 static camera_part camera_part_of(const block_sums *sums, double caustics, double cost, double camera_rays)
 {
-    double own = fmax(sums->own - sums->by_parts + caustics * sums->caustic, 0.0);
-    double variance = own + fmax(sums->by_camera_ray, 0.0) / camera_rays;
-    return (camera_part){fmax(variance, LEAST_REST * sums->all), cost + sums->cost_of_further * (camera_rays - 1.0)};
+    double own = double_max(sums->own - sums->by_parts + caustics * sums->caustic, 0.0);
+    double variance = own + double_max(sums->by_camera_ray, 0.0) / camera_rays;
+    return (camera_part){double_max(variance, LEAST_REST * sums->all),
+                         cost + sums->cost_of_further * (camera_rays - 1.0)};
 }
 
 static double cost_per_variance_of(camera_part part) { return part.variance > 0.0 ? part.cost / part.variance : 0.0; }
@@ -120,7 +121,7 @@ static uint32_t best_caustic_bits(double wanted, uint32_t most)
 
 static double wanted_camera_rays(double cost_per_variance, const block_sums *sums)
 {
-    return wanted_count(cost_per_variance, fmax(sums->by_camera_ray, 0.0), sums->cost_of_further);
+    return wanted_count(cost_per_variance, double_max(sums->by_camera_ray, 0.0), sums->cost_of_further);
 }
 
 /* Returns the next larger number of further camera rays. */
@@ -286,9 +287,9 @@ static void find_window(int begin, int large_size, int size, int *out_first, int
 {
     int end = begin + FILM_BLOCK < large_size ? begin + FILM_BLOCK : large_size;
     double scale = (double)size / (double)large_size, middle = 0.5 * scale * (begin + end);
-    double half = fmax(0.5 * scale * (end - begin), PILOT_HALF_WINDOW);
-    *out_first = (int)fmax(floor(middle - half), 0.0);
-    *out_last = (int)fmin(ceil(middle + half), (double)size) - 1;
+    double half = double_max(0.5 * scale * (end - begin), PILOT_HALF_WINDOW);
+    *out_first = (int)double_max(floor(middle - half), 0.0);
+    *out_last = (int)double_min(ceil(middle + half), (double)size) - 1;
 }
 
 static split_counts counts_by_pilot(const struct ag_film *film, const struct ag_film *pilot, int x, int y,
@@ -340,13 +341,13 @@ static void add_group(const block_sums *sums, double cost_per_variance, const ch
     double lights = wanted_count(cost_per_variance, sums->by_light, sums->cost_of_light);
     double caustics = wanted_count(cost_per_variance, sums->caustic, sums->cost_of_caustic);
     double camera_rays = wanted_camera_rays(cost_per_variance, sums);
-    camera_rays = fmin(fmax(camera_rays, 1.0 + (double)c->least.further), 1.0 + (double)c->most.further);
-    mean_counts best = {.rays = fmin(fmax(rays, (double)c->least.rays), (double)c->most.rays),
-                        .lights =
-                            fmin(fmax(lights, fmax((double)c->least_lights, (double)c->least.lights * camera_rays)),
-                                 (double)c->most.lights * camera_rays),
+    camera_rays = double_min(double_max(camera_rays, 1.0 + (double)c->least.further), 1.0 + (double)c->most.further);
+    mean_counts best = {.rays = double_min(double_max(rays, (double)c->least.rays), (double)c->most.rays),
+                        .lights = double_min(double_max(lights, double_max((double)c->least_lights,
+                                                                           (double)c->least.lights * camera_rays)),
+                                             (double)c->most.lights * camera_rays),
                         .camera_rays = camera_rays,
-                        .caustics = fmin(fmax(caustics, share_that_asks(c->most.caustic_bits)), 1.0)};
+                        .caustics = double_min(double_max(caustics, share_that_asks(c->most.caustic_bits)), 1.0)};
     camera_part part = split_by(sums, best);
     whole->variance += part.variance;
     whole->cost += part.cost;
@@ -371,7 +372,7 @@ static ag_status find_cost_per_variance(const struct ag_film *pilot, const choic
             add_group(&groups[i], *out, c, &whole);
             pixels += groups[i].pixels;
         }
-        *out = (whole.cost + fixed * pixels) / fmax(whole.variance, clean * pixels);
+        *out = (whole.cost + fixed * pixels) / double_max(whole.variance, clean * pixels);
     }
     free(groups);
     return AG_OK;

@@ -33,7 +33,7 @@ static float photon_density(const photon_map *map, eye_worker *worker, const map
         radius_squared = photon_neighbor_distance_squared(neighbors[found]);
     }
     arena_restore(worker->scratch, mark);
-    return (float)found / (AG_PI * fmaxf(radius_squared, map->min_radius_squared));
+    return (float)found / (AG_PI * float_max(radius_squared, map->min_radius_squared));
 }
 
 /* Returns the harmonic mean of how far gather rays go: near points weigh most, as they do for the light. */
@@ -50,7 +50,7 @@ static float gather_distance(const transport *t, eye_worker *worker, const verte
             continue;
         count++;
         if (transport_trace(t, worker, transport_scattered_ray(t, v, first.direction, false), &met))
-            sum += 1.0f / fmaxf(met.hit.distance, 1e-20f);
+            sum += 1.0f / float_max(met.hit.distance, 1e-20f);
     }
     return sum > 0.0f ? (float)count / sum : 0.0f;
 }

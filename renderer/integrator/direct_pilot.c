@@ -31,7 +31,7 @@ static float mean(rgb c) { return (c.r + c.g + c.b) * (1.0f / 3.0f); }
 static float cosine_at(const lit_point *point, vec3 direction)
 {
     bool has_normal = point->normal.x != 0.0f || point->normal.y != 0.0f || point->normal.z != 0.0f;
-    return has_normal ? fmaxf(vec3_dot(point->normal, direction), 0.0f) : 1.0f;
+    return has_normal ? float_max(vec3_dot(point->normal, direction), 0.0f) : 1.0f;
 }
 
 /* The light that one sample of a lamp or sky brings, over the density of its numbers. *in_out_possible counts the

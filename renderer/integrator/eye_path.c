@@ -104,7 +104,7 @@ bool eye_path_trace(const transport *t, eye_worker *worker, eye_path *path, eye_
     path->throughput = rgb_mul(path->throughput, out->transmittance);
     worker->camera_rays_met += is_met && is_camera_ray;
     if (is_camera_ray && t->wants_layers) {
-        float alpha = is_met ? 1.0f : fmaxf(1.0f - rgb_mean(out->transmittance), 0.0f);
+        float alpha = is_met ? 1.0f : float_max(1.0f - rgb_mean(out->transmittance), 0.0f);
         sample->layers->alpha += path->shared * alpha;
         if (is_met && !path->is_further)
             fill_first_hit(t, worker, path, out, &sample->layers->first);

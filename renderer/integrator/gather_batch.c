@@ -98,7 +98,7 @@ static float sum_variance(const gather *g)
 {
     float count = (float)g->ray_count, sum = rgb_mean(rgb_add(g->known, g->read)), weight = rgb_mean(g->throughput);
     float squares = g->known_squares + g->read_squares;
-    float of_ray = g->ray_count > 1 ? fmaxf(squares - sum * sum / count, 0.0f) / (count - 1.0f) : squares * 0.5f;
+    float of_ray = g->ray_count > 1 ? float_max(squares - sum * sum / count, 0.0f) / (count - 1.0f) : squares * 0.5f;
     return weight * weight * count * of_ray;
 }
 

@@ -47,9 +47,10 @@ static gather_share share_of_gather(const transport *t, uint32_t most, const eye
 {
     if (path->scatterings == 0)
         return (gather_share){most, 1.0f};
-    float wanted = (float)most * fminf(path->share * rgb_max(path->throughput), 1.0f);
+    float wanted = (float)most * float_min(path->share * rgb_max(path->throughput), 1.0f);
     if (wanted < 1.0f) /* a bound would cut what chance has made brighter */
-        return (gather_share){1, t->settings->clamp_indirect > 0.0f ? 1.0f : fminf((float)most * path->share, 1.0f)};
+        return (gather_share){1,
+                              t->settings->clamp_indirect > 0.0f ? 1.0f : float_min((float)most * path->share, 1.0f)};
     uint32_t bits = nearest_bits(wanted);
     return (gather_share){1u << bits < most ? 1u << bits : most, 1.0f};
 }
@@ -88,7 +89,7 @@ static direct_light direct_radiance(const transport *t, eye_worker *worker, cons
 {
     uint32_t lights = from->split.lights;
     if (path->scatterings > 0) {
-        uint32_t bits = nearest_bits((float)lights * fminf(path->share * rgb_max(path->throughput), 1.0f));
+        uint32_t bits = nearest_bits((float)lights * float_min(path->share * rgb_max(path->throughput), 1.0f));
         lights = 1u << bits < lights ? 1u << bits : lights;
     }
     uint64_t before = eye_worker_cost(worker);
@@ -171,7 +172,7 @@ static void add_diffuse(const transport *t, eye_sample *sample, const diffuse_li
 
 /* Returns how much of the light behind the path the eye sees, at most 1. The throughput alone may be more, as radiance
  * grows where it leaves glass, and then bounds nothing. */
-static float share_seen(const eye_path *path) { return path->share * fminf(rgb_max(path->throughput), 1.0f); }
+static float share_seen(const eye_path *path) { return path->share * float_min(rgb_max(path->throughput), 1.0f); }
 
 /* Returns the number of branches, as the exponent of a power of two, into which the path is split at the vertex: at one
  * that is seen directly or by a smooth surface, where it is traced on in more than one direction; into the fewer, the
@@ -224,8 +225,8 @@ static bool split_ways(const eye_path *path, const vertex *v, two_ways *out)
     bool is_mirror = reflected > transmitted;
     *out = (two_ways){*path, *path, is_mirror ? u_reflected : u_transmitted, is_mirror ? u_transmitted : u_reflected};
     out->bright.ways_taken = out->faint.ways_taken = path->ways_taken + 1;
-    out->bright.share *= fmaxf(reflected, transmitted);
-    out->faint.share *= fminf(reflected, transmitted);
+    out->bright.share *= float_max(reflected, transmitted);
+    out->faint.share *= float_min(reflected, transmitted);
     out->faint.where = sampler_apart(&path->where, (uint32_t)path->vertex);
     return true;
 }

@@ -141,7 +141,7 @@ float transport_caustic_probability(const transport *t, float share_seen)
 {
     if (t->settings->clamp_indirect > 0.0f)
         return 1.0f; /* a bound would cut what chance has made brighter */
-    return fminf(share_seen / CAUSTIC_SHARE_MAX, 1.0f);
+    return float_min(share_seen / CAUSTIC_SHARE_MAX, 1.0f);
 }
 
 rgb transport_some_caustics(const transport *t, eye_worker *worker, const vertex *v, float probability, float u)

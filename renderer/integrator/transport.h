@@ -138,7 +138,7 @@ static inline ray_cone transport_gather_cone(const vertex *v)
  * that survive have it then. level: > 0. u: a random number in [0, 1). */
 static inline bool transport_survives(rgb *in_out_throughput, float level, float u)
 {
-    float survival = fminf(1.0f, rgb_max(*in_out_throughput) / level);
+    float survival = float_min(rgb_max(*in_out_throughput) / level, 1.0f);
     if (u >= survival)
         return false;
     *in_out_throughput = rgb_scale(*in_out_throughput, 1.0f / survival);

@@ -16,7 +16,7 @@ static rgb rgb_of(const double xyz[3], const working_space *space)
     color_matrix from_xyz = space ? space->from_xyz : color_rec709_from_xyz();
     double c[3];
     color_matrix_apply(&from_xyz, xyz, c);
-    return rgb_make((float)fmax(c[0], 0.0), (float)fmax(c[1], 0.0), (float)fmax(c[2], 0.0));
+    return rgb_make((float)double_max(c[0], 0.0), (float)double_max(c[1], 0.0), (float)double_max(c[2], 0.0));
 }
 
 static rgb rgb_of_chromaticity(double x, double y, const working_space *space)
@@ -104,7 +104,7 @@ rgb spectra_sampled(const double *pairs, size_t pair_count, spectrum_use use, co
             if (use == SPECTRUM_REFLECTANCE)
                 weight[i] *= cie_d65(nm);
             if (is_index)
-                weight[i] = fmax(weight[i], 0.0);
+                weight[i] = double_max(weight[i], 0.0);
             sum[i] += weight[i] * v;
             whole[i] += weight[i];
         }
@@ -116,7 +116,8 @@ rgb spectra_sampled(const double *pairs, size_t pair_count, spectrum_use use, co
         return rgb_of(xyz, space);
     }
     for (int i = 0; i < 3; i++)
-        value[i] = use == SPECTRUM_REFLECTANCE ? fmin(fmax(sum[i] / whole[i], 0.0), 1.0) : sum[i] / whole[i];
+        value[i] =
+            use == SPECTRUM_REFLECTANCE ? double_min(double_max(sum[i] / whole[i], 0.0), 1.0) : sum[i] / whole[i];
     rgb result = rgb_make((float)value[0], (float)value[1], (float)value[2]);
     return use == SPECTRUM_DENSITY ? working_space_light(space, result) : result;
 }

@@ -77,8 +77,8 @@ static surface_sample sample_sphere_cone(const shape *lamp, vec3 point, vec2 u, 
     float distance = vec3_length(to_center), r = lamp->as.quadric.uniform_radius;
     frame f = frame_from_z(vec3_scale(to_center, 1.0f / distance));
     vec3 local = sample_uniform_cone(u, cone);
-    float sin2 = fmaxf(0.0f, local.x * local.x + local.y * local.y);
-    float along = distance * local.z - sqrtf(fmaxf(0.0f, r * r - distance * distance * sin2));
+    float sin2 = float_max(local.x * local.x + local.y * local.y, 0.0f);
+    float along = distance * local.z - sqrtf(float_max(r * r - distance * distance * sin2, 0.0f));
     return sphere_point(lamp,
                         vec3_normalize(vec3_sub(vec3_add_scaled(point, frame_to_world(&f, local), along), center)));
 }
@@ -203,7 +203,7 @@ static bool emit_line(const scene *s, const light *l, const emission_numbers *nu
     out->direction = sample_uniform_sphere(numbers->direction);
     const bool is_behind = l->as.area.two_sided && numbers->part < 0.5f, is_inward = lamp->flip_normal != is_behind;
     const vec2 across = sample_disk_concentric(numbers->position);
-    const float rise = sqrtf(fmaxf(1.0f - across.x * across.x - across.y * across.y, 0.0f));
+    const float rise = sqrtf(float_max(1.0f - across.x * across.x - across.y * across.y, 0.0f));
     const frame f = frame_from_z(out->direction);
     surface_sample at = sphere_point(lamp, frame_to_world(&f, vec3_make(across.x, across.y, is_inward ? -rise : rise)));
     at.epsilon = lamp->as.quadric.epsilon;
@@ -230,7 +230,7 @@ static bool emit(const scene *s, const light *l, const light_target *target, con
             n = vec3_negate(n);
             cosine = -cosine;
         }
-        return finish_emission(s, l, &at, n, fmaxf(cosine, 0.0f) / (at.pdf_area * density * pdf), out);
+        return finish_emission(s, l, &at, n, float_max(cosine, 0.0f) / (at.pdf_area * density * pdf), out);
     }
     if (l->as.area.two_sided && numbers->part < 0.5f)
         n = vec3_negate(n);
@@ -283,9 +283,9 @@ static void add_normal(const mesh *m, uint32_t triangle, vec3 n, vec3 axis, floa
         *(vec3_dot(n, m->normals[index[k]]) < 0.0f ? &is_turned : &is_kept) = true;
     float cosine = vec3_dot(n, axis);
     if (is_kept)
-        *least_cos = fminf(*least_cos, cosine);
+        *least_cos = float_min(*least_cos, cosine);
     if (is_turned)
-        *least_cos = fminf(*least_cos, -cosine);
+        *least_cos = float_min(*least_cos, -cosine);
 }
 
 static vec3 triangle_normal(const shape *s, uint32_t triangle, float *out_area)
@@ -326,7 +326,7 @@ static void find_mesh_normals(const shape *s, light_bounds *b)
         else
             least = LIGHT_BOUNDS_ALL_AROUND; /* a sliver, whose normal single precision does not know */
     }
-    b->cos_normals = fmaxf(least - LIGHT_BOUNDS_SLACK, LIGHT_BOUNDS_ALL_AROUND);
+    b->cos_normals = float_max(least - LIGHT_BOUNDS_SLACK, LIGHT_BOUNDS_ALL_AROUND);
 }
 
 static void narrow_bounds(const scene *s, const light *l, light_bounds *b)

@@ -28,7 +28,7 @@ static void octahedral_coordinates(vec3 d, double *out_x, double *out_y)
 {
     double x = d.x, y = d.y, z = d.z;
     double r = sqrt((x * x + y * y) / (1.0 + fabs(z))); /* sqrt(1 - |z|), without cancellation */
-    double b = fmin(1.0, r) * 4.0 * angle_turns(fabs(y), fabs(x)), a = fmin(1.0, r) - b;
+    double b = double_min(r, 1.0) * 4.0 * angle_turns(fabs(y), fabs(x)), a = double_min(r, 1.0) - b;
     double u = z < 0.0 ? 1.0 - b : a, v = z < 0.0 ? 1.0 - a : b;
     *out_x = 0.5 * (copysign(u, x) + 1.0);
     *out_y = 0.5 * (copysign(v, y) + 1.0);
@@ -51,7 +51,7 @@ static vec3 spherical_direction(const environment *e, uint32_t x, uint32_t y, ve
     uint32_t row = is_low ? e->height - 1 - y : y;
     double f = is_low ? 1.0 - (double)within.y : (double)within.y;
     double h0 = row_sine_squared(row, e->height), h = h0 + f * (row_sine_squared(row + 1, e->height) - h0);
-    double z = 1.0 - 2.0 * h, across = 2.0 * sqrt(fmax(0.0, h * (1.0 - h)));
+    double z = 1.0 - 2.0 * h, across = 2.0 * sqrt(double_max(h * (1.0 - h), 0.0));
     float s, c;
     sincos_turns((float)((x + (double)within.x) / e->width), &s, &c);
     return vec3_make((float)(across * c), (float)(across * s), (float)(is_low ? -z : z));
@@ -115,7 +115,7 @@ void environment_uv_at(const environment *e, vec3 direction, uint32_t *out_x, ui
         down = is_low ? 1.0 - down : down;
     }
     double right = x * e->width - *out_x;
-    *out_within = (vec2){float_below_one(fmaxf((float)right, 0.0f)), float_below_one(fmaxf((float)down, 0.0f))};
+    *out_within = (vec2){float_below_one(float_max((float)right, 0.0f)), float_below_one(float_max((float)down, 0.0f))};
 }
 
 vec3 environment_direction(const environment *e, uint32_t x, uint32_t y, vec2 within)

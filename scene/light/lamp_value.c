@@ -9,7 +9,7 @@ rgb lamp_texture_value(const scene *s, const light *l, const surface_hit *hit)
     if (l->as.area.radiance_texture == SCENE_NO_TEXTURE)
         return rgb_gray(1.0f);
     rgb c = texture_evaluate_rgb(&s->textures, l->as.area.radiance_texture, hit);
-    return rgb_make(fmaxf(c.r, 0.0f), fmaxf(c.g, 0.0f), fmaxf(c.b, 0.0f));
+    return rgb_make(float_max(c.r, 0.0f), float_max(c.g, 0.0f), float_max(c.b, 0.0f));
 }
 
 bool lamp_varies(const scene *s, const light *l)

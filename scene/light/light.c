@@ -93,6 +93,7 @@ bool light_ball_cone(vec3 center, float radius, vec3 point, float *out_one_minus
     if (distance_squared <= r2 * 1.0001f)
         return false;
     float sin2 = r2 / distance_squared;
-    *out_one_minus_cos = sin2 / (1.0f + sqrtf(fmaxf(0.0f, 1.0f - sin2))); /* 1 - sqrt(1 - x), without cancellation */
+    *out_one_minus_cos =
+        sin2 / (1.0f + sqrtf(float_max(1.0f - sin2, 0.0f))); /* 1 - sqrt(1 - x), without cancellation */
     return true;
 }

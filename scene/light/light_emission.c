@@ -16,7 +16,7 @@ bool light_aim_at(const light_target *target, vec3 origin, float own_cone, vec2 
         return false;
     float one_minus_cos;
     if (!light_ball_cone(target->center, target->radius, origin, &one_minus_cos) ||
-        one_minus_cos > fminf(TARGET_CONE_MAX, own_cone))
+        one_minus_cos > float_min(own_cone, TARGET_CONE_MAX))
         return false;
     vec3 to_center = vec3_sub(target->center, origin);
     frame f = frame_from_z(vec3_scale(to_center, 1.0f / vec3_length(to_center)));
@@ -40,7 +40,7 @@ static nested_balls nested_balls_make(const scene *s, const light_target *whole,
         return balls;
     /* the octaves, rounded up: by its bits, since no two machines agree on logarithms */
     int octaves;
-    float fraction = frexpf(fminf(whole->radius / balls.inner.radius, 0x1p100f), &octaves);
+    float fraction = frexpf(float_min(whole->radius / balls.inner.radius, 0x1p100f), &octaves);
     balls.count = 1 + octaves - (fraction == 0.5f);
     return balls;
 }
@@ -73,7 +73,7 @@ static bool start_from_afar(const scene *s, const light_target *whole, vec3 dire
     const nested_balls balls = nested_balls_make(s, whole, numbers->focus);
     int picked = balls.count - 1;
     if (balls.count > 1)
-        picked = (int)fminf(numbers->part * (float)balls.count, (float)balls.count - 1.0f);
+        picked = (int)float_min(numbers->part * (float)balls.count, (float)balls.count - 1.0f);
     light_target ball = nested_ball(&balls, picked);
     vec2 d = sample_disk_concentric(numbers->position);
     vec3 point = vec3_add(ball.center, frame_to_world(&f, (vec3){d.x * ball.radius, d.y * ball.radius, 0.0f}));

@@ -148,7 +148,7 @@ uint32_t light_tree_pick(const light_tree *t, vec3 point, vec3 normal, float u, 
                 break;
             before += weights[k];
         }
-        u = float_below_one(fmaxf((wanted - before) / weights[picked], 0.0f));
+        u = float_below_one(float_max((wanted - before) / weights[picked], 0.0f));
         probability *= weights[picked] / sum;
         at = n->child[picked];
         if (n->is_lamp[picked]) {
@@ -192,7 +192,7 @@ static float cos_of_sum(float cos_a, float cos_b)
 {
     if (cos_a <= -cos_b) /* the sum is half a turn or more */
         return -1.0f;
-    return fmaxf(cos_a * cos_b - sine_of(cos_a) * sine_of(cos_b), -1.0f);
+    return float_max(cos_a * cos_b - sine_of(cos_a) * sine_of(cos_b), -1.0f);
 }
 
 /* Returns the bounds of all lamps together, and writes their box. */
@@ -211,8 +211,8 @@ static light_bounds bounds_of(const lamp *lamps, uint32_t begin, uint32_t end, v
             vec3 a = b->two_sided ? vec3_face_forward(b->axis, axis) : b->axis;
             axis = vec3_add_scaled(axis, a, b->intensity);
             all.intensity += b->intensity;
-            all.cos_emission = fminf(all.cos_emission, b->cos_emission);
-            all.least_cos = fmaxf(all.least_cos, b->least_cos);
+            all.cos_emission = float_min(all.cos_emission, b->cos_emission);
+            all.least_cos = float_max(all.least_cos, b->least_cos);
             all.two_sided = all.two_sided || b->two_sided;
         }
         float length = vec3_length(axis);
@@ -224,9 +224,9 @@ static light_bounds bounds_of(const lamp *lamps, uint32_t begin, uint32_t end, v
                 const light_bounds *b = &lamps[i].bounds;
                 float cosine = vec3_dot(b->axis, all.axis);
                 cosine = b->two_sided ? fabsf(cosine) : cosine;
-                least = fminf(least, cos_of_sum(fminf(fmaxf(cosine, -1.0f), 1.0f), b->cos_normals));
+                least = float_min(least, cos_of_sum(float_min(float_max(cosine, -1.0f), 1.0f), b->cos_normals));
             }
-            all.cos_normals = fmaxf(least - SLACK, -1.0f);
+            all.cos_normals = float_max(least - SLACK, -1.0f);
         }
         all.center = vec3_add_scaled(low, vec3_sub(high, low), 0.5f);
         all.radius = 0.5f * vec3_length(vec3_sub(high, low)) * 1.00001f;
@@ -245,7 +245,7 @@ static double cost_of(const lamp *lamps, uint32_t begin, uint32_t end)
     vec3 d = vec3_sub(high, low);
     double margin = 1e-3, x = d.x + margin, y = d.y + margin, z = d.z + margin;
     double lit = (b.two_sided ? 2.0 : 1.0) * (1.1 - (double)cos_of_sum(b.cos_normals, b.cos_emission));
-    return (x * y + y * z + z * x) * fmin(lit, 2.1) * (double)b.intensity;
+    return (x * y + y * z + z * x) * double_min(lit, 2.1) * (double)b.intensity;
 }
 
 static float along(const lamp *l, int axis)
@@ -308,9 +308,9 @@ static uint32_t split(lamp *lamps, group g)
 static void set_child(node *n, uint32_t k, bool is_lamp, const light_bounds *b)
 {
     float near2 = (is_lamp ? LAMP_NEAR : GROUP_NEAR) * b->radius * b->radius;
-    n->nearest2[k] = fmaxf(near2, NEAREST * NEAREST);
+    n->nearest2[k] = float_max(near2, NEAREST * NEAREST);
     n->center[0][k] = b->center.x, n->center[1][k] = b->center.y, n->center[2][k] = b->center.z;
-    n->radius2[k] = fmaxf(b->radius * b->radius, NEAREST * NEAREST); /* nearer, directions are but rounding */
+    n->radius2[k] = float_max(b->radius * b->radius, NEAREST * NEAREST); /* nearer, directions are but rounding */
     n->axis[0][k] = b->axis.x, n->axis[1][k] = b->axis.y, n->axis[2][k] = b->axis.z;
     n->cos_normals[k] = b->cos_normals;
     n->sin_normals[k] = sine_of(b->cos_normals);
@@ -381,7 +381,7 @@ static void find_lamps(const scene *s, const light_tree *t, const uint32_t *ligh
     }
     for (uint32_t i = 0; i < count; i++) {
         light_bounds *b = &out_lamps[i].bounds;
-        b->intensity = fmaxf((float)((double)b->intensity / total), 1e-20f);
+        b->intensity = float_max((float)((double)b->intensity / total), 1e-20f);
         b->center = vec3_scale(vec3_sub(b->center, t->center), t->inverse_radius);
         b->radius = b->radius * t->inverse_radius * 1.0001f;
         vec3 reach = {b->radius, b->radius, b->radius};

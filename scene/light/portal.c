@@ -29,7 +29,7 @@ static vec3 direction_at(double u, double v)
     float sx, cx, sy, cy;
     sincos_turns((float)(0.5 * (u - 0.5)), &sx, &cx);
     sincos_turns((float)(0.5 * (v - 0.5)), &sy, &cy);
-    return vec3_normalize(vec3_make(sx * cy, sy * cx, fmaxf(cx * cy, 1e-12f)));
+    return vec3_normalize(vec3_make(sx * cy, sy * cx, float_max(cx * cy, 1e-12f)));
 }
 
 /* Solid angle per area of the map. */
@@ -74,18 +74,18 @@ static uint32_t find_edge(const double *sums, uint32_t size, bool is_y, double w
     uint32_t low = (uint32_t)begin, high = end < size ? (uint32_t)end : size - 1;
     while (low < high) { /* the first cell up to whose far side there is as much */
         uint32_t middle = low + (high - low) / 2;
-        *edge = fmin(middle + 1.0, end);
+        *edge = double_min(middle + 1.0, end);
         if (sum_in(sums, size, *w) > wanted)
             high = middle;
         else
             low = middle + 1;
     }
-    double from = fmax(low, begin), to = fmin(low + 1.0, end);
+    double from = double_max(low, begin), to = double_min(low + 1.0, end);
     *edge = from;
     double before = from > begin ? sum_in(sums, size, *w) : 0.0;
     *edge = to;
     double share = sum_in(sums, size, *w) - before;
-    *edge = share > 0.0 ? fmin(fmax(from + (to - from) * (wanted - before) / share, from), to) : from;
+    *edge = share > 0.0 ? double_min(double_max(from + (to - from) * (wanted - before) / share, from), to) : from;
     return low;
 }
 
@@ -104,7 +104,7 @@ static bool sample_window(const double *sums, uint32_t size, window w, vec2 u, v
     window column = w;
     uint32_t i = find_edge(sums, size, false, (double)u.x * whole, &column);
     double x = column.x1;
-    column = (window){fmax(i, w.x0), fmin(i + 1.0, w.x1), w.y0, w.y1};
+    column = (window){double_max(i, w.x0), double_min(i + 1.0, w.x1), w.y0, w.y1};
     uint32_t j = find_edge(sums, size, true, (double)u.y * sum_in(sums, size, column), &column);
     double density = cell_density(sums, size, i, j, whole);
     *out_local = direction_at(x / size, column.y1 / size);
@@ -206,7 +206,7 @@ static rgb irradiance_on(const portal *p, const light_directions *sky)
             for (uint32_t k = 0; k < parts * parts; k++) {
                 vec2 within = {((float)(k % parts) + 0.5f) / (float)parts, ((float)(k / parts) + 0.5f) / (float)parts};
                 vec3 w = frame_to_world(&sky->world_from_light, environment_direction(e, x, y, within));
-                cosine += fmax(0.0, (double)vec3_dot(w, p->axes.z));
+                cosine += double_max((double)vec3_dot(w, p->axes.z), 0.0);
             }
             cosine *= environment_pixel_solid_angle(e, y) / ((double)parts * parts);
             rgb c = e->pixels[(size_t)y * e->width + x];
@@ -330,8 +330,8 @@ bool portal_sample_flux(const portal *p, const light_target *target, const emiss
         float slope_x = d.x / d.z, slope_y = d.y / d.z;
         float x = center.x - slope_x * center.z, reach_x = target->radius * sqrtf(1.0f + slope_x * slope_x);
         float y = center.y - slope_y * center.z, reach_y = target->radius * sqrtf(1.0f + slope_y * slope_y);
-        x0 = fmaxf(x0, x - reach_x), x1 = fminf(x1, x + reach_x);
-        y0 = fmaxf(y0, y - reach_y), y1 = fminf(y1, y + reach_y);
+        x0 = float_max(x0, x - reach_x), x1 = float_min(x1, x + reach_x);
+        y0 = float_max(y0, y - reach_y), y1 = float_min(y1, y + reach_y);
         if (!(x0 < x1 && y0 < y1))
             return false;
     }

@@ -65,7 +65,7 @@ static void narrow_bounds(const scene *s, const light *l, light_bounds *b)
     b->axis = l->as.projection.world_from_light.z;
     b->cos_normals = 1.0f;
     b->cos_emission = corner - LIGHT_BOUNDS_SLACK;
-    b->intensity = rgb_mean(l->power) / (2.0f * AG_PI * fmaxf(1.0f - corner, 1e-6f));
+    b->intensity = rgb_mean(l->power) / (2.0f * AG_PI * float_max(1.0f - corner, 1e-6f));
 }
 
 const light_type projection_light = {.init = init,

@@ -42,7 +42,7 @@ static float ramp_at(const light *l, float height)
 
 static float dimming_at(const light *l, float height)
 {
-    return l->as.spot.dims_by_cosine ? fmaxf(1.0f - height, 0.0f) : 1.0f;
+    return l->as.spot.dims_by_cosine ? float_max(1.0f - height, 0.0f) : 1.0f;
 }
 
 static rgb intensity(const light *l, vec3 direction)
@@ -55,7 +55,7 @@ static rgb intensity(const light *l, vec3 direction)
 static double integral_to(const light *l, double height)
 {
     const double start = (double)l->as.spot.falloff_start, end = (double)l->as.spot.falloff_end, ramp = end - start;
-    const double dims = l->as.spot.dims_by_cosine ? 1.0 : 0.0, full = fmin(height, start);
+    const double dims = l->as.spot.dims_by_cosine ? 1.0 : 0.0, full = double_min(height, start);
     const double sum = full * (1.0 - 0.5 * dims * full);
     if (height <= start)
         return sum;
@@ -120,7 +120,7 @@ static void narrow_bounds(const scene *s, const light *l, light_bounds *b)
     light_narrow_to_point(s, l, b);
     b->axis = l->as.spot.direction;
     b->cos_normals = 1.0f;
-    b->cos_emission = fmaxf(1.0f - l->as.spot.falloff_end - LIGHT_BOUNDS_SLACK, LIGHT_BOUNDS_ALL_AROUND);
+    b->cos_emission = float_max(1.0f - l->as.spot.falloff_end - LIGHT_BOUNDS_SLACK, LIGHT_BOUNDS_ALL_AROUND);
     b->intensity = rgb_mean(l->as.spot.intensity);
 }
 

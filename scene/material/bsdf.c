@@ -115,7 +115,7 @@ static float flux_correction(const bsdf *b, vec3 direction)
 {
     float numerator = fabsf(vec3_dot(b->out, b->shading.z) * vec3_dot(direction, b->geometric_normal));
     float denominator = fabsf(vec3_dot(b->out, b->geometric_normal) * vec3_dot(direction, b->shading.z));
-    return denominator > 0.0f ? fminf(numerator / denominator, BSDF_SHADING_NORMAL_MAX) : 0.0f;
+    return denominator > 0.0f ? float_min(numerator / denominator, BSDF_SHADING_NORMAL_MAX) : 0.0f;
 }
 
 /* Of flux by a rough lobe. Diffuse lobes go by the geometric normal already; what hair sends on knows of no normal, and
@@ -128,7 +128,7 @@ static float rough_flux_factor(const bsdf *b, const bsdf_lobe_type *type, vec3 d
     if (!is_fibre)
         return flux_correction(b, direction);
     float met = fabsf(vec3_dot(b->out, b->geometric_normal));
-    return met > 0.0f ? fminf(fabsf(vec3_dot(direction, b->geometric_normal)) / met, BSDF_FIBRE_FLUX_MAX) : 0.0f;
+    return met > 0.0f ? float_min(fabsf(vec3_dot(direction, b->geometric_normal)) / met, BSDF_FIBRE_FLUX_MAX) : 0.0f;
 }
 
 float bsdf_flux_gain(const bsdf *b)
@@ -137,7 +137,7 @@ float bsdf_flux_gain(const bsdf *b)
     if (b->material.kind != MATERIAL_HAIR || b->material.hair.surface == HAIR_FACES_RAYS)
         return 1.0f;
     float met = fabsf(vec3_dot(b->out, b->geometric_normal));
-    return fminf(fmaxf(LEFT / fmaxf(met, 1.0f / BSDF_FIBRE_FLUX_MAX), 1.0f), BSDF_FIBRE_FLUX_MAX);
+    return float_min(float_max(LEFT / float_max(met, 1.0f / BSDF_FIBRE_FLUX_MAX), 1.0f), BSDF_FIBRE_FLUX_MAX);
 }
 
 /* base, m: a diffuse lobe, and the material that it is of. */
@@ -146,7 +146,7 @@ static float arrival_factor(const bsdf *b, const bsdf_lobe_type *base, const mat
     float shading = vec3_dot(b->out, b->shading.z), geometric = vec3_dot(b->out, b->geometric_normal);
     if (shading * geometric <= 0.0f)
         return 0.0f; /* behind the horizon of one of the normals: neither way of computing finds light */
-    return fminf(shading / geometric, BSDF_SHADING_NORMAL_MAX) * bsdf_lobe_transmittance(base, m, shading);
+    return float_min(shading / geometric, BSDF_SHADING_NORMAL_MAX) * bsdf_lobe_transmittance(base, m, shading);
 }
 
 float bsdf_arrival_factor(const bsdf *b)

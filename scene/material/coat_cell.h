@@ -42,17 +42,17 @@ bool coat_cell_fill(coat_cell *out_cell, const material *m, int metal_walks, uin
 static inline float coat_cosine(int number)
 {
     float root = (float)number / (float)(COAT_COSINES - 1);
-    return fmaxf(root * root, 1e-3f);
+    return float_max(root * root, 1e-3f);
 }
 
 static inline vec3 coat_direction(float cosine)
 {
-    return (vec3){sqrtf(fmaxf(0.0f, 1.0f - cosine * cosine)), 0.0f, cosine};
+    return (vec3){sqrtf(float_max(1.0f - cosine * cosine, 0.0f)), 0.0f, cosine};
 }
 
 static inline float coat_interpolate(const float values[COAT_COSINES], float cosine)
 {
-    float along = sqrtf(fminf(fmaxf(cosine, 0.0f), 1.0f)) * (float)(COAT_COSINES - 1);
+    float along = sqrtf(float_min(float_max(cosine, 0.0f), 1.0f)) * (float)(COAT_COSINES - 1);
     int step = along < (float)(COAT_COSINES - 2) ? (int)along : COAT_COSINES - 2;
     float u = along - (float)step;
     return (1.0f - u) * values[step] + u * values[step + 1];

@@ -28,7 +28,8 @@ ggx coat_lobe_facets(const coat_point *m, float breadth)
         bend * bend * m->interface.alpha_u * m->interface.alpha_u + widen * widen * m->base.alpha_u * m->base.alpha_u;
     float v =
         bend * bend * m->interface.alpha_v * m->interface.alpha_v + widen * widen * m->base.alpha_v * m->base.alpha_v;
-    return (ggx){fmaxf(breadth * sqrtf(u), MATERIAL_SMOOTH_ALPHA), fmaxf(breadth * sqrtf(v), MATERIAL_SMOOTH_ALPHA)};
+    return (ggx){float_max(breadth * sqrtf(u), MATERIAL_SMOOTH_ALPHA),
+                 float_max(breadth * sqrtf(v), MATERIAL_SMOOTH_ALPHA)};
 }
 
 /* The tangent of the half vector's angle that half of the lobe's light stays below. */
@@ -52,7 +53,7 @@ static float median_tangent(const tangents *t)
     for (int k = 0; k < TANGENT_BINS; k++) {
         if (below + t->bins[k] >= 0.5f * t->sum && t->bins[k] > 0.0f) {
             float x = ((float)k + (0.5f * t->sum - below) / t->bins[k]) / TANGENT_BINS;
-            return t->scale * x / (1.0f - fminf(x, 0.999f));
+            return t->scale * x / (1.0f - float_min(x, 0.999f));
         }
         below += t->bins[k];
     }
@@ -67,7 +68,7 @@ static float median_tangent(const tangents *t)
 static float breadth_correction(const coat_point *m)
 {
     float metal = m->ior * m->ior * m->base.alpha_u * m->base.alpha_v, bend = 0.5f * (m->ior - 1.0f) * (m->ior - 1.0f);
-    float share = metal / fmaxf(metal + bend * m->interface.alpha_u * m->interface.alpha_v, 1e-12f);
+    float share = metal / float_max(metal + bend * m->interface.alpha_u * m->interface.alpha_v, 1e-12f);
     return 0.8f + 0.2f * share + 1.5f * share * (1.0f - share);
 }
 
@@ -95,7 +96,7 @@ float coat_lobe_fit_breadth(const coat_point *m, const coat_layers *layers, uint
             if (i.z > 0.0f)
                 add_tangent(&seen, h, ggx_masking_shadowing(facets, out, i) / ggx_masking(facets, out));
         }
-        breadth = fminf(fmaxf(breadth * wanted / median_tangent(&seen), 0.25f), 4.0f);
+        breadth = float_min(float_max(breadth * wanted / median_tangent(&seen), 0.25f), 4.0f);
     }
     return breadth * breadth_correction(m);
 }
@@ -156,7 +157,7 @@ bool coat_lobe_fit_scales(coat_cell *cell, const coat_point *m, const coat_layer
         for (int number = 0; number < COAT_COSINES; number++) {
             float sum = lobe_albedo(cell, samples, number);
             bool is_lit = sum > 1e-6f && cell->albedo[number] > 1e-6f;
-            next[number] = is_lit ? fminf(cell->scale[number] * sqrtf(cell->albedo[number] / sum), 16.0f) : 1.0f;
+            next[number] = is_lit ? float_min(cell->scale[number] * sqrtf(cell->albedo[number] / sum), 16.0f) : 1.0f;
         }
         memcpy(cell->scale, next, sizeof next);
     }

@@ -90,9 +90,9 @@ static vec3 scatter(float g, vec3 along, vec2 u)
     float cosine = 1.0f - 2.0f * u.x, sine, s, c;
     if (fabsf(g) > 1e-3f) {
         float t = (1.0f - g * g) / (1.0f - g + 2.0f * g * u.x);
-        cosine = fminf(fmaxf((1.0f + g * g - t * t) / (2.0f * g), -1.0f), 1.0f);
+        cosine = float_min(float_max((1.0f + g * g - t * t) / (2.0f * g), -1.0f), 1.0f);
     }
-    sine = sqrtf(fmaxf(0.0f, 1.0f - cosine * cosine));
+    sine = sqrtf(float_max(1.0f - cosine * cosine, 0.0f));
     sincos_turns(u.y, &s, &c);
     frame f = frame_from_z(along);
     return vec3_normalize(frame_to_world(&f, (vec3){sine * c, sine * s, cosine}));

@@ -39,7 +39,7 @@ static inline float fresnel_conductor_channel(float cos_in, float eta, float k)
     float c2 = cos_in * cos_in, s2 = 1.0f - c2;
     float t0 = eta * eta - k * k - s2;
     float a2b2 = sqrtf(t0 * t0 + 4.0f * eta * eta * k * k);
-    float a = sqrtf(fmaxf(0.0f, 0.5f * (a2b2 + t0)));
+    float a = sqrtf(float_max(0.5f * (a2b2 + t0), 0.0f));
     float t1 = a2b2 + c2, t2 = 2.0f * a * cos_in;
     float perpendicular = (t1 - t2) / (t1 + t2);
     float t3 = c2 * a2b2 + s2 * s2, t4 = t2 * s2;
@@ -57,7 +57,7 @@ static inline rgb fresnel_conductor(float cos_in, rgb eta, rgb k)
  * weight. */
 static inline float fresnel_schlick_weight(float cos_in)
 {
-    float away = 1.0f - fminf(cos_in, 1.0f), square = away * away;
+    float away = 1.0f - float_min(cos_in, 1.0f), square = away * away;
     return square * square * away;
 }
 
@@ -80,7 +80,7 @@ static inline float fresnel_dielectric_diffuse(float eta, float thickness)
 static inline bool refract_through(vec3 v, vec3 n, float eta, vec3 *out_through)
 {
     float cos_in = vec3_dot(v, n);
-    float sin2_through = fmaxf(0.0f, 1.0f - cos_in * cos_in) / (eta * eta);
+    float sin2_through = float_max(1.0f - cos_in * cos_in, 0.0f) / (eta * eta);
     if (sin2_through >= 1.0f)
         return false;
     float cos_through = sqrtf(1.0f - sin2_through);

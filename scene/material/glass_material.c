@@ -79,7 +79,7 @@ static bool is_thin_pane(const material_point *p)
 
 static rgb thin_transmittance(const material_point *p, float cosine)
 {
-    return rgb_gray(1.0f - fresnel_thin_dielectric(fminf(fabsf(cosine), 1.0f), p->glass.ior));
+    return rgb_gray(1.0f - fresnel_thin_dielectric(float_min(fabsf(cosine), 1.0f), p->glass.ior));
 }
 
 static void add_thin_lobes(bsdf *b, const surface_hit *hit)

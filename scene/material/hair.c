@@ -23,7 +23,7 @@ static double power(double x, int n)
     return product;
 }
 
-static double sine_to_cosine(double s) { return sqrt(fmax(0.0, 1.0 - s * s)); }
+static double sine_to_cosine(double s) { return sqrt(double_max(1.0 - s * s, 0.0)); }
 
 rgb hair_absorption_from_reflectance(rgb reflectance, float beta_n)
 {
@@ -32,7 +32,8 @@ rgb hair_absorption_from_reflectance(rgb reflectance, float beta_n)
     const float channels[3] = {reflectance.r, reflectance.g, reflectance.b};
     float sigma_a[3];
     for (int c = 0; c < 3; c++)
-        sigma_a[c] = (float)square(natural_logarithm((double)fminf(fmaxf(channels[c], REFLECTANCE_MIN), 1.0f)) / fit);
+        sigma_a[c] =
+            (float)square(natural_logarithm((double)float_min(float_max(channels[c], REFLECTANCE_MIN), 1.0f)) / fit);
     return rgb_make(sigma_a[0], sigma_a[1], sigma_a[2]);
 }
 
@@ -44,7 +45,7 @@ typedef struct inclination {
 
 static inclination inclination_of(float sine)
 {
-    double s = fmin(fmax((double)sine, -1.0), 1.0);
+    double s = double_min(double_max((double)sine, -1.0), 1.0);
     return (inclination){s, sine_to_cosine(s)};
 }
 
@@ -66,17 +67,18 @@ static double angle_of(double sine, double cosine)
 }
 
 /* The sine of the normal's angle to the ray, [-1, 1]. v grows to the axis' left as the ray comes, phi to its right. */
-static double offset_of(float v) { return fmin(fmax(1.0 - 2.0 * (double)v, -1.0), 1.0); }
+static double offset_of(float v) { return double_min(double_max(1.0 - 2.0 * (double)v, -1.0), 1.0); }
 
 static hair_crossing crossing_of(const hair_point *p, double offset, inclination o)
 {
     hair_crossing w;
     double ior = p->fibre->ior, cos_gamma = sine_to_cosine(offset);
-    double bent = sqrt(fmax(1e-12, ior * ior - o.sine * o.sine)) / fmax(o.cosine, 1e-6); /* Marschner's eta' */
-    double sin_inside = fmin(fmax(offset / bent, -1.0), 1.0), cos_inside = sine_to_cosine(sin_inside);
-    double within = 2.0 * cos_inside / fmax(sine_to_cosine(o.sine / ior), 1e-6);
+    double bent =
+        sqrt(double_max(1e-12, ior * ior - o.sine * o.sine)) / double_max(o.cosine, 1e-6); /* Marschner's eta' */
+    double sin_inside = double_min(double_max(offset / bent, -1.0), 1.0), cos_inside = sine_to_cosine(sin_inside);
+    double within = 2.0 * cos_inside / double_max(sine_to_cosine(o.sine / ior), 1e-6);
     const double sigma_a[3] = {(double)p->sigma_a.r, (double)p->sigma_a.g, (double)p->sigma_a.b};
-    w.reflected = (double)fresnel_dielectric((float)fmin(o.cosine * cos_gamma, 1.0), (float)ior);
+    w.reflected = (double)fresnel_dielectric((float)double_min(o.cosine * cos_gamma, 1.0), (float)ior);
     w.gamma = angle_of(offset, cos_gamma);
     w.gamma_inside = angle_of(sin_inside, cos_inside);
     for (int c = 0; c < 3; c++)
@@ -98,7 +100,7 @@ static hair_shares shares_of(const hair_crossing *w)
         shares.of[0][c] = f;
         shares.of[1][c] = square(1.0 - f) * t;
         shares.of[2][c] = shares.of[1][c] * t * f;
-        shares.of[3][c] = shares.of[2][c] * f * t / fmax(1.0 - t * f, 1e-6);
+        shares.of[3][c] = shares.of[2][c] * f * t / double_max(1.0 - t * f, 1e-6);
     }
     for (int k = 0; k < HAIR_LOBES; k++)
         shares.mean[k] = (shares.of[k][0] + shares.of[k][1] + shares.of[k][2]) / 3.0;
@@ -137,11 +139,12 @@ static double longitudinal(const hair_fibre *h, int lobe, inclination i, inclina
 /* The sine of a direction's inclination. */
 static double sample_longitudinal(inclination o, double precision, vec2 u)
 {
-    double c = 1.0 + natural_logarithm(fmax((double)u.x, 1e-10) + (1.0 - (double)u.x) * exponential(-2.0 * precision)) /
-                         precision;
+    double c =
+        1.0 + natural_logarithm(double_max((double)u.x, 1e-10) + (1.0 - (double)u.x) * exponential(-2.0 * precision)) /
+                  precision;
     float sin_turn, cos_turn;
     sincos_turns(u.y, &sin_turn, &cos_turn);
-    return fmin(fmax(-c * o.sine + sine_to_cosine(c) * (double)cos_turn * o.cosine, -1.0), 1.0);
+    return double_min(double_max(-c * o.sine + sine_to_cosine(c) * (double)cos_turn * o.cosine, -1.0), 1.0);
 }
 
 /* --- azimuthal scattering: its integral over phi is 1 --- */
@@ -155,8 +158,8 @@ static double azimuthal(const hair_fibre *h, double angle)
 static double sample_azimuthal(double u, double width)
 {
     double end = exponential(-HALF_TURN / width), low = end / (1.0 + end), high = 1.0 / (1.0 + end);
-    double p = fmin(fmax(low + (high - low) * u, 1e-12), 1.0 - 1e-12);
-    return fmin(fmax(-width * natural_logarithm((1.0 - p) / p), -HALF_TURN), HALF_TURN);
+    double p = double_min(double_max(low + (high - low) * u, 1e-12), 1.0 - 1e-12);
+    return double_min(double_max(-width * natural_logarithm((1.0 - p) / p), -HALF_TURN), HALF_TURN);
 }
 
 /* --- all lobes together --- */
@@ -164,7 +167,7 @@ static double sample_azimuthal(double u, double width)
 hair_fibre hair_fibre_make(float ior, float beta_m, float beta_n, float tilt_degrees)
 {
     hair_fibre h = {.ior = (double)ior};
-    double bm = fmax((double)beta_m, BETA_MIN), bn = fmax((double)beta_n, BETA_MIN);
+    double bm = double_max((double)beta_m, BETA_MIN), bn = double_max((double)beta_n, BETA_MIN);
     double variance = square(0.726 * bm + 0.812 * bm * bm + 3.7 * power(bm, 20));
     h.precision[0] = 1.0 / variance;
     h.precision[1] = 4.0 / variance;
@@ -241,7 +244,7 @@ void hair_evaluate(const hair_point *p, bool is_flux, bool is_same_side, vec3 di
         const hair_crossing of_eye = crossing_of(p, offset_left_at(p, is_same_side), i);
         carried = shares_of(&of_eye);
         lobe_values(p->fibre, &of_eye, i, o, -turn, 1.0, values);
-        narrower = p->surface == HAIR_FACES_RAYS ? i.cosine / fmax(o.cosine, 1e-6) : 1.0;
+        narrower = p->surface == HAIR_FACES_RAYS ? i.cosine / double_max(o.cosine, 1e-6) : 1.0;
     }
     for (int k = 0; k < HAIR_LOBES; k++)
         for (int c = 0; c < 3; c++)
@@ -266,7 +269,7 @@ vec3 hair_sample(const hair_point *point, bool is_flux, float u_lobe, vec2 u)
             break;
         before += p;
     }
-    x = fmin(fmax((x - before) / fmax(p, 1e-12), 0.0), 0x1.fffffep-1);
+    x = double_min(double_max((x - before) / double_max(p, 1e-12), 0.0), 0x1.fffffep-1);
     inclination o = inclination_of(point->sine);
     double sine = sample_longitudinal(tilted(h, o, lobe), h->precision[lobe], u), cosine = sine_to_cosine(sine);
     double turn = TWO_PI * x;

@@ -10,7 +10,7 @@ static float diffuse_cosine(const bsdf *b, bool is_through, vec3 direction, vec3
     if (bsdf_is_same_side(b, direction) == is_through)
         return 0.0f;
     float side = bsdf_is_below(b) != is_through ? -1.0f : 1.0f;
-    return fmaxf(0.0f, side * i.z);
+    return float_max(side * i.z, 0.0f);
 }
 
 /* diffuse_cosine to the geometric normal: by it flux leaves a diffuse lobe, whose radiance is the same all around. */

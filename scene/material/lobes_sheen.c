@@ -28,7 +28,7 @@ static void evaluate_sheen(const bsdf *b, bsdf_transport transport, vec3 directi
 static bool sample_sheen(const bsdf *b, bsdf_transport transport, vec3 o, float u_lobe, vec2 u, vec3 *out_local)
 {
     float sine, cosine;
-    const float radius = sqrtf(fmaxf(0.0f, 1.0f - u.x * u.x));
+    const float radius = sqrtf(float_max(1.0f - u.x * u.x, 0.0f));
     (void)transport, (void)o, (void)u_lobe;
     sincos_turns(u.y, &sine, &cosine);
     *out_local = (vec3){radius * cosine, radius * sine, side_of(b) * u.x};

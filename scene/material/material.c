@@ -11,8 +11,8 @@
 void material_make_rough_on_both_axes(float *alpha_u, float *alpha_v)
 {
     if (*alpha_u >= MATERIAL_SMOOTH_ALPHA || *alpha_v >= MATERIAL_SMOOTH_ALPHA) {
-        *alpha_u = fmaxf(*alpha_u, 1e-4f);
-        *alpha_v = fmaxf(*alpha_v, 1e-4f);
+        *alpha_u = float_max(*alpha_u, 1e-4f);
+        *alpha_v = float_max(*alpha_v, 1e-4f);
     }
 }
 

@@ -28,7 +28,8 @@ bool material_always(const scene *s, const material *m)
 
 static rgb clamp_to_unit(rgb v)
 {
-    return (rgb){fminf(fmaxf(v.r, 0.0f), 1.0f), fminf(fmaxf(v.g, 0.0f), 1.0f), fminf(fmaxf(v.b, 0.0f), 1.0f)};
+    return (rgb){float_min(float_max(v.r, 0.0f), 1.0f), float_min(float_max(v.g, 0.0f), 1.0f),
+                 float_min(float_max(v.b, 0.0f), 1.0f)};
 }
 
 void material_look_up_color(const material_lookup *at, uint32_t texture_index, rgb *in_out_color)
@@ -44,7 +45,7 @@ void material_look_up_facets(const material_lookup *at, const material *m, uint3
     float *const alphas[] = {&facets->alpha_u, &facets->alpha_v};
     for (int i = 0; i < 2; i++)
         if (textures[i] != SCENE_NO_TEXTURE) {
-            float value = fmaxf(0.0f, texture_evaluate_float(&at->s->textures, textures[i], at->hit));
+            float value = float_max(texture_evaluate_float(&at->s->textures, textures[i], at->hit), 0.0f);
             *alphas[i] = m->remaps_roughness ? sqrtf(value) : value;
         }
     material_make_rough_on_both_axes(&facets->alpha_u, &facets->alpha_v);
@@ -63,11 +64,11 @@ void material_look_up_metal(const material_lookup *at, const material *m, float 
     }
     if (m->eta_texture != SCENE_NO_TEXTURE) {
         rgb eta = texture_evaluate_rgb(&at->s->textures, m->eta_texture, at->hit);
-        *in_out_eta =
-            rgb_scale(rgb_make(fmaxf(eta.r, ETA_MIN), fmaxf(eta.g, ETA_MIN), fmaxf(eta.b, ETA_MIN)), from_air);
+        *in_out_eta = rgb_scale(
+            rgb_make(float_max(eta.r, ETA_MIN), float_max(eta.g, ETA_MIN), float_max(eta.b, ETA_MIN)), from_air);
     }
     if (m->k_texture != SCENE_NO_TEXTURE) {
         rgb k = texture_evaluate_rgb(&at->s->textures, m->k_texture, at->hit);
-        *in_out_k = rgb_scale(rgb_make(fmaxf(k.r, 0.0f), fmaxf(k.g, 0.0f), fmaxf(k.b, 0.0f)), from_air);
+        *in_out_k = rgb_scale(rgb_make(float_max(k.r, 0.0f), float_max(k.g, 0.0f), float_max(k.b, 0.0f)), from_air);
     }
 }

@@ -51,10 +51,10 @@ static inline vec3 ggx_sample_visible(ggx m, vec3 v, vec2 u)
     float r = sqrtf(u.x), sine, cosine;
     sincos_turns(u.y, &sine, &cosine);
     float p1 = r * cosine, p2 = r * sine, blend = 0.5f * (1.0f + vh.z);
-    p2 = (1.0f - blend) * sqrtf(fmaxf(0.0f, 1.0f - p1 * p1)) + blend * p2;
-    float p3 = sqrtf(fmaxf(0.0f, 1.0f - p1 * p1 - p2 * p2));
+    p2 = (1.0f - blend) * sqrtf(float_max(1.0f - p1 * p1, 0.0f)) + blend * p2;
+    float p3 = sqrtf(float_max(1.0f - p1 * p1 - p2 * p2, 0.0f));
     vec3 nh = vec3_add(vec3_add(vec3_scale(t1, p1), vec3_scale(t2, p2)), vec3_scale(vh, p3));
-    return vec3_normalize((vec3){m.alpha_u * nh.x, m.alpha_v * nh.y, fmaxf(1e-6f, nh.z)});
+    return vec3_normalize((vec3){m.alpha_u * nh.x, m.alpha_v * nh.y, float_max(1e-6f, nh.z)});
 }
 
 /* Half way between two directions on one side, in the upper half. */

@@ -11,7 +11,7 @@ static const float COAT_F0 = 0.04f;
 /* Refraction by rough facets needs half vectors, which are lost where the index does not change. */
 static const float ROUGH_IOR_MIN = 1.001f;
 
-static float clamp_to_unit(float x) { return fminf(fmaxf(x, 0.0f), 1.0f); }
+static float clamp_to_unit(float x) { return float_min(float_max(x, 0.0f), 1.0f); }
 
 static float coat_alpha(const principled_point *m) { return m->clearcoat_roughness * m->clearcoat_roughness; }
 
@@ -49,8 +49,8 @@ static float coat_through(const principled_point *m, float cosine)
  * KHR_materials_sheen has it. */
 static float sheen_through(const principled_point *m, float cosine)
 {
-    return fmaxf(0.0f,
-                 1.0f - rgb_max(m->sheen) * sheen_albedo((sheen_model)m->sheen_model, m->sheen_roughness, cosine));
+    return float_max(1.0f - rgb_max(m->sheen) * sheen_albedo((sheen_model)m->sheen_model, m->sheen_roughness, cosine),
+                     0.0f);
 }
 
 static float cover_through(const principled_point *m, float cosine)
@@ -71,14 +71,15 @@ static float interface_reflectance_of(const principled_point *m, float alpha, fl
 static float interface_reflectance(const principled_point *m, float cosine)
 {
     const float u = interface_reflectance_of(m, m->facets.alpha_u, cosine);
-    return m->facets.alpha_u == m->facets.alpha_v ? u
-                                                  : fmaxf(u, interface_reflectance_of(m, m->facets.alpha_v, cosine));
+    return m->facets.alpha_u == m->facets.alpha_v
+               ? u
+               : float_max(u, interface_reflectance_of(m, m->facets.alpha_v, cosine));
 }
 
 float principled_base_transmittance(const principled_point *m, float cosine)
 {
     cosine = fabsf(cosine);
-    return fmaxf(0.0f, 1.0f - interface_reflectance(m, cosine)) * cover_through(m, cosine);
+    return float_max(1.0f - interface_reflectance(m, cosine), 0.0f) * cover_through(m, cosine);
 }
 
 /* The mean of t over the hemisphere, by Gauss's rule of 6 points. */
@@ -95,9 +96,9 @@ static float mean_base_transmittance(const principled_point *m)
     return sum; /* twice the integral of t cos over cos */
 }
 
-static rgb bound_below(rgb v) { return rgb_make(fmaxf(v.r, 0.0f), fmaxf(v.g, 0.0f), fmaxf(v.b, 0.0f)); }
+static rgb bound_below(rgb v) { return rgb_make(float_max(v.r, 0.0f), float_max(v.g, 0.0f), float_max(v.b, 0.0f)); }
 
-static rgb bound_above(rgb v) { return rgb_make(fminf(v.r, 1.0f), fminf(v.g, 1.0f), fminf(v.b, 1.0f)); }
+static rgb bound_above(rgb v) { return rgb_make(float_min(v.r, 1.0f), float_min(v.g, 1.0f), float_min(v.b, 1.0f)); }
 
 /* Khronos, KHR_materials_anisotropy: along the grain the roughness goes from that across it to 1. */
 ggx principled_facets(float roughness_u, float roughness_v, float anisotropy)
@@ -114,8 +115,8 @@ ggx principled_facets(float roughness_u, float roughness_v, float anisotropy)
 static rgb bound_sheen(rgb sheen, sheen_model model)
 {
     const float most = sheen_factor_max(model);
-    return rgb_make(fminf(fmaxf(sheen.r, 0.0f), most), fminf(fmaxf(sheen.g, 0.0f), most),
-                    fminf(fmaxf(sheen.b, 0.0f), most));
+    return rgb_make(float_min(float_max(sheen.r, 0.0f), most), float_min(float_max(sheen.g, 0.0f), most),
+                    float_min(float_max(sheen.b, 0.0f), most));
 }
 
 void principled_resolve(principled_point *p, rgb specular_color)
@@ -128,9 +129,9 @@ void principled_resolve(principled_point *p, rgb specular_color)
     p->has_sheen = !rgb_is_black(p->sheen);
     float f0 = 1.0f; /* ior 0 is glTF's word for an infinite one */
     if (p->ior > 0.0f) {
-        p->ior = fmaxf(p->ior, 1.0f);
+        p->ior = float_max(p->ior, 1.0f);
         if (!material_is_smooth(p->facets.alpha_u, p->facets.alpha_v) && principled_is_solid(p))
-            p->ior = fmaxf(p->ior, ROUGH_IOR_MIN);
+            p->ior = float_max(p->ior, ROUGH_IOR_MIN);
         float root = (p->ior - 1.0f) / (p->ior + 1.0f);
         f0 = root * root;
     }
@@ -166,7 +167,7 @@ void principled_prepare(material *m)
     PRINCIPLED_SHARE_LIST(RESOLVED_SHARE)
 #undef RESOLVED_SHARE
     m->roughness = clamp_to_unit(m->roughness);
-    m->roughness_v = fminf(m->roughness_v, 1.0f);
+    m->roughness_v = float_min(m->roughness_v, 1.0f);
     m->anisotropy = clamp_to_unit(m->anisotropy);
     m->sheen = p.sheen;
     m->ior = p.ior;
@@ -190,12 +191,12 @@ void principled_interface(const principled_point *m, float cosine, bool is_insid
     rgb dielectric = schlick(m->dielectric_f0, m->specular, weight), from_within = dielectric;
     if (is_inside) {
         /* the value at the refracted angle outside, so that both directions are the same; total reflection is 1 */
-        float sin2 = (1.0f - fminf(cosine * cosine, 1.0f)) * m->ior * m->ior;
+        float sin2 = (1.0f - float_min(cosine * cosine, 1.0f)) * m->ior * m->ior;
         from_within = sin2 >= 1.0f ? rgb_gray(1.0f)
                                    : schlick(m->dielectric_f0, m->specular, fresnel_schlick_weight(sqrtf(1.0f - sin2)));
     }
     *out_reflected =
-        rgb_add(rgb_scale(dielectric, fmaxf(0.0f, 1.0f - m->metallic - through)), rgb_scale(from_within, through));
+        rgb_add(rgb_scale(dielectric, float_max(1.0f - m->metallic - through, 0.0f)), rgb_scale(from_within, through));
     if (m->metallic > 0.0f)
         *out_reflected = rgb_add(*out_reflected, rgb_scale(schlick(m->reflectance, 1.0f, weight), m->metallic));
     *out_through = rgb_scale(m->reflectance, through * (1.0f - rgb_max(from_within)));
@@ -208,7 +209,7 @@ float principled_coat_reflectance(const principled_point *m, float cosine)
 
 float principled_sheen_factor(const principled_point *m, float cos_o, float cos_i)
 {
-    return fminf(coat_through(m, fabsf(cos_o)), coat_through(m, fabsf(cos_i)));
+    return float_min(coat_through(m, fabsf(cos_o)), coat_through(m, fabsf(cos_i)));
 }
 
 float principled_cover_factor(const principled_point *m, float cos_o, float cos_i)
@@ -219,7 +220,7 @@ float principled_cover_factor(const principled_point *m, float cos_o, float cos_
     bool is_solid = principled_is_solid(m);
     float o = is_solid && cos_o < 0.0f ? 1.0f : cover_through(m, fabsf(cos_o));
     float i = is_solid && cos_i < 0.0f ? 1.0f : cover_through(m, fabsf(cos_i));
-    return fminf(o, i);
+    return float_min(o, i);
 }
 
 principled_shares principled_shares_at(const principled_point *m, float cosine)

@@ -30,7 +30,7 @@ static bool transmits(const scene *s, const material *m)
 static bool is_transparent(const scene *s, const material *m)
 {
     const rgb c = m->reflectance;
-    const bool is_white = m->reflectance_texture == SCENE_NO_TEXTURE && fminf(c.r, fminf(c.g, c.b)) >= 0.9f;
+    const bool is_white = m->reflectance_texture == SCENE_NO_TEXTURE && float_min(c.r, float_min(c.g, c.b)) >= 0.9f;
     const bool is_uniform =
         m->transmission_texture == SCENE_NO_TEXTURE && (m->metallic == 0.0f || m->metallic_texture == SCENE_NO_TEXTURE);
     return transmits(s, m) && is_uniform && (1.0f - m->metallic) * m->transmission >= 0.5f && (!m->is_thin || is_white);
@@ -107,7 +107,7 @@ static void look_up(const material_lookup *at, const material *m, material_point
     multiply(at, m->anisotropy_texture, &anisotropy);
     if (m->roughness_v_texture != SCENE_NO_TEXTURE && roughness_v > 0.0f)
         roughness_v =
-            fmaxf(0.0f, roughness_v * texture_evaluate_float(&at->s->textures, m->roughness_v_texture, at->hit));
+            float_max(roughness_v * texture_evaluate_float(&at->s->textures, m->roughness_v_texture, at->hit), 0.0f);
     p->facets = principled_facets(roughness, roughness_v, anisotropy);
     principled_resolve(p, specular_color);
 }
@@ -122,7 +122,8 @@ static rgb pane_transmittance(const material_point *m, float cosine)
 {
     const principled_point *p = &m->principled;
     rgb reflected, through;
-    principled_interface(p, fminf(fabsf(cosine), 1.0f), cosine < 0.0f && principled_is_solid(p), &reflected, &through);
+    principled_interface(p, float_min(fabsf(cosine), 1.0f), cosine < 0.0f && principled_is_solid(p), &reflected,
+                         &through);
     return rgb_scale(through, principled_cover_factor(p, cosine, -cosine));
 }
 
@@ -143,7 +144,7 @@ static void add_lobes(bsdf *b, const surface_hit *hit)
     const principled_point *m = &b->material.principled;
     (void)hit;
     float cosine = vec3_dot(b->out, b->shading.z);
-    principled_shares shares = principled_shares_at(m, fminf(fabsf(cosine), 1.0f));
+    principled_shares shares = principled_shares_at(m, float_min(fabsf(cosine), 1.0f));
     const bool has_interface = principled_has_interface(m);
     const bool has_sheen = m->has_sheen && !(cosine < 0.0f && principled_is_solid(m));
     if (!rgb_is_black(principled_base_albedo(m)) || !(has_interface || has_sheen))
@@ -151,7 +152,7 @@ static void add_lobes(bsdf *b, const surface_hit *hit)
     if (has_interface)
         bsdf_add_lobe(b, LOBE_PRINCIPLED, BSDF_TRACED, facets_are_smooth(m->facets), shares.interface);
     if (has_sheen)
-        bsdf_add_lobe(b, LOBE_SHEEN, BSDF_TRACED, false, fmaxf(shares.sheen, SHEEN_SHARE_MIN));
+        bsdf_add_lobe(b, LOBE_SHEEN, BSDF_TRACED, false, float_max(shares.sheen, SHEEN_SHARE_MIN));
     float coat_alpha = m->clearcoat_roughness * m->clearcoat_roughness;
     if (m->clearcoat > 0.0f && !(cosine < 0.0f && principled_is_solid(m)))
         bsdf_add_lobe(b, LOBE_CLEARCOAT, BSDF_TRACED, material_is_smooth(coat_alpha, coat_alpha), shares.coat);

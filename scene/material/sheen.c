@@ -5,14 +5,14 @@
 #include "material/sheen_albedo_table.h"
 #include "math/exponential.h"
 
-static float fibre_roughness(float roughness) { return fminf(fmaxf(roughness, SHEEN_ROUGHNESS_MIN), 1.0f); }
+static float fibre_roughness(float roughness) { return float_min(float_max(roughness, SHEEN_ROUGHNESS_MIN), 1.0f); }
 
 /* --- the table of albedos --- */
 
 /* Where x in [0, 1] lies among even steps. */
 static int find_step(float x, int count, float *out_rest)
 {
-    const float along = fminf(fmaxf(x, 0.0f), 1.0f) * (float)(count - 1);
+    const float along = float_min(float_max(x, 0.0f), 1.0f) * (float)(count - 1);
     int step = (int)along;
     step = step < count - 2 ? step : count - 2;
     *out_rest = along - (float)step;
@@ -27,7 +27,7 @@ static float along_row(const uint16_t *row, int column, float rest)
 static float look_up_row(const uint16_t *row, float cosine)
 {
     float rest;
-    const int column = find_step(sqrtf(fminf(fmaxf(cosine, 0.0f), 1.0f)), SHEEN_ALBEDO_COSINES, &rest);
+    const int column = find_step(sqrtf(float_min(float_max(cosine, 0.0f), 1.0f)), SHEEN_ALBEDO_COSINES, &rest);
     return along_row(row, column, rest);
 }
 
@@ -43,7 +43,8 @@ float sheen_albedo(sheen_model model, float roughness, float cosine)
 {
     if (model == SHEEN_SCHLICK)
         return look_up_row(SHEEN_ALBEDO_SCHLICK, cosine) * SHEEN_ALBEDO_SCHLICK_MAX;
-    return fminf(look_up(model == SHEEN_VELVET ? SHEEN_ALBEDO_VELVET : SHEEN_ALBEDO_CHARLIE, roughness, cosine), 1.0f);
+    return float_min(look_up(model == SHEEN_VELVET ? SHEEN_ALBEDO_VELVET : SHEEN_ALBEDO_CHARLIE, roughness, cosine),
+                     1.0f);
 }
 
 float sheen_factor_max(sheen_model model) { return model == SHEEN_SCHLICK ? 1.0f / SHEEN_ALBEDO_SCHLICK_MAX : 1.0f; }
@@ -77,13 +78,13 @@ static float charlie_lambda(float cosine, float a)
  * that, in both directions, so that it stays reciprocal. */
 static float charlie_excess(float roughness, float cosine)
 {
-    return fmaxf(1.0f, look_up(SHEEN_ALBEDO_CHARLIE, roughness, cosine));
+    return float_max(look_up(SHEEN_ALBEDO_CHARLIE, roughness, cosine), 1.0f);
 }
 
 static float charlie(float roughness, vec3 o, vec3 i, vec3 h)
 {
     const float r = fibre_roughness(roughness), a = r * r, inverse = 1.0f / a;
-    const float sine2 = fmaxf(0.0f, h.x * h.x + h.y * h.y);
+    const float sine2 = float_max(h.x * h.x + h.y * h.y, 0.0f);
     const float density = (2.0f + inverse) * power(sine2, 0.5f * inverse) / (2.0f * AG_PI);
     const float value = density / ((1.0f + charlie_lambda(o.z, a) + charlie_lambda(i.z, a)) * 4.0f * o.z * i.z);
     return value / (charlie_excess(roughness, o.z) * charlie_excess(roughness, i.z));
@@ -91,7 +92,7 @@ static float charlie(float roughness, vec3 o, vec3 i, vec3 h)
 
 static float schlick(vec3 o, vec3 h)
 {
-    const float w = 1.0f - fminf(fabsf(vec3_dot(o, h)), 1.0f), w2 = w * w;
+    const float w = 1.0f - float_min(fabsf(vec3_dot(o, h)), 1.0f), w2 = w * w;
     return w2 * w2 * w;
 }
 
@@ -105,7 +106,7 @@ static float velvet(float sigma, vec3 o, vec3 i, vec3 h)
     if (!(sine2 > COSINE_MIN && oh > COSINE_MIN))
         return 0.0f;
     const float density = (float)exponential(-(double)(h.z * h.z / (sine2 * s2))) / (AG_PI * s2 * sine2 * sine2);
-    const float unmasked = fminf(1.0f, 2.0f * h.z * fminf(o.z, i.z) / oh); /* Torrance and Sparrow's grooves */
+    const float unmasked = float_min(2.0f * h.z * float_min(o.z, i.z) / oh, 1.0f); /* Torrance and Sparrow's grooves */
     return density * unmasked / (4.0f * o.z * i.z);
 }
 

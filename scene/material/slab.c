@@ -18,7 +18,7 @@ bool slab_may_be_of(const scene *s, uint32_t material_index)
 static float sum_series(float in, float within, float left, float out)
 {
     float to_and_fro = within * left;
-    return in * left * out / fmaxf(1.0f - to_and_fro * to_and_fro, 1e-12f);
+    return in * left * out / float_max(1.0f - to_and_fro * to_and_fro, 1e-12f);
 }
 
 /* The way within is as long as the bent one, and lies where the straight one does. */
@@ -32,7 +32,7 @@ static rgb transmittance_within(const surface_hit *hit, float cosine_within, con
 slab_point slab_point_at(const material_point *face, float cosine, const surface_hit *hit, const medium *between)
 {
     const material_type *type = material_type_of(face->kind);
-    float ior = type->index(face), c = fminf(cosine, 1.0f), sin2_within = (1.0f - c * c) / (ior * ior);
+    float ior = type->index(face), c = float_min(cosine, 1.0f), sin2_within = (1.0f - c * c) / (ior * ior);
     slab_point p = {.reflected = rgb_gray(1.0f), .through = rgb_gray(0.0f)};
     if (sin2_within >= 1.0f)
         return p;

@@ -29,7 +29,7 @@ bool surface_footprint_at(const scene *s, const surface_hit *hit, surface_footpr
     vec3 minor = sine > 1e-4f ? vec3_scale(across, 1.0f / sine) : any.x;
     out->axes[0] = vec3_scale(minor, ray->width);
     out->axes[1] =
-        vec3_scale(vec3_cross(n, minor), ray->is_coarse ? ray->width : ray->width / fmaxf(cosine, COSINE_MIN));
+        vec3_scale(vec3_cross(n, minor), ray->is_coarse ? ray->width : ray->width / float_max(cosine, COSINE_MIN));
     for (int i = 0; i < 2; i++)
         out->uv_axes[i] = uv_step(dpdu, dpdv, out->axes[i]);
     out->is_coarse = ray->is_coarse;

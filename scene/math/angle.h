@@ -4,12 +4,14 @@
 #ifndef AFTERGLOW_ANGLE_H
 #define AFTERGLOW_ANGLE_H
 
+#include "math/min_max.h"
+
 #include <math.h>
 
 /* atan2(y, x) / (2 pi), counted from the x axis to the y axis and on: in [0, 1]. Right to 2e-11; 0 where both are 0. */
 static inline double angle_turns(double y, double x)
 {
-    double ax = fabs(x), ay = fabs(y), high = fmax(ax, ay), t = fmin(ax, ay), turns = 0.0;
+    double ax = fabs(x), ay = fabs(y), high = double_max(ax, ay), t = double_min(ax, ay), turns = 0.0;
     if (!(high > 0.0))
         return 0.0;
     t /= high;

@@ -47,7 +47,8 @@ static inline vec2 sample_disk_concentric_inverse(vec2 d)
     float r = copysignf(sqrtf(d.x * d.x + d.y * d.y), along);
     float other = 8.0f * copysignf(r, across) * (float)angle_turns(fabs((double)across), fabs((double)along));
     vec2 u = is_wide ? (vec2){r, other} : (vec2){other, r};
-    return (vec2){float_below_one(fmaxf(0.5f + 0.5f * u.x, 0.0f)), float_below_one(fmaxf(0.5f + 0.5f * u.y, 0.0f))};
+    return (vec2){float_below_one(float_max(0.5f + 0.5f * u.x, 0.0f)),
+                  float_below_one(float_max(0.5f + 0.5f * u.y, 0.0f))};
 }
 
 /* Cosine-distributed around +z; density cos / pi per solid angle. */
@@ -61,7 +62,7 @@ static inline vec3 sample_cosine_hemisphere(vec2 u)
 /* Uniform on the unit sphere; density 1 / (4 pi). */
 static inline vec3 sample_uniform_sphere(vec2 u)
 {
-    float z = 1.0f - 2.0f * u.x, r = sqrtf(fmaxf(0.0f, 1.0f - z * z)), s, c;
+    float z = 1.0f - 2.0f * u.x, r = sqrtf(float_max(1.0f - z * z, 0.0f)), s, c;
     sincos_turns(u.y, &s, &c);
     return (vec3){r * c, r * s, z};
 }
@@ -69,7 +70,7 @@ static inline vec3 sample_uniform_sphere(vec2 u)
 /* Back from a unit vector to what sample_uniform_sphere was given. */
 static inline vec2 sample_uniform_sphere_inverse(vec3 d)
 {
-    return (vec2){float_below_one(fmaxf(0.5f - 0.5f * d.z, 0.0f)),
+    return (vec2){float_below_one(float_max(0.5f - 0.5f * d.z, 0.0f)),
                   float_below_one((float)angle_turns((double)d.y, (double)d.x))};
 }
 
@@ -77,7 +78,7 @@ static inline vec2 sample_uniform_sphere_inverse(vec3 d)
 static inline vec3 sample_uniform_cone(vec2 u, float one_minus_cos_max)
 {
     float h = u.x * one_minus_cos_max; /* 1 - cos, so that thin cones keep their precision */
-    float r = sqrtf(fmaxf(0.0f, h * (2.0f - h))), s, c;
+    float r = sqrtf(float_max(h * (2.0f - h), 0.0f)), s, c;
     sincos_turns(u.y, &s, &c);
     return (vec3){r * c, r * s, 1.0f - h};
 }

@@ -4,6 +4,8 @@
 #ifndef AFTERGLOW_VEC3_H
 #define AFTERGLOW_VEC3_H
 
+#include "math/min_max.h"
+
 #include <math.h>
 #include <stdbool.h>
 #include <stdint.h>
@@ -45,16 +47,23 @@ static inline float vec3_length_squared(vec3 a) { return vec3_dot(a, a); }
 static inline float vec3_length(vec3 a) { return sqrtf(vec3_dot(a, a)); }
 static inline float vec3_distance_squared(vec3 a, vec3 b) { return vec3_length_squared(vec3_sub(a, b)); }
 static inline vec3 vec3_normalize(vec3 a) { return vec3_scale(a, 1.0f / vec3_length(a)); }
-static inline vec3 vec3_min(vec3 a, vec3 b) { return (vec3){fminf(a.x, b.x), fminf(a.y, b.y), fminf(a.z, b.z)}; }
-static inline vec3 vec3_max(vec3 a, vec3 b) { return (vec3){fmaxf(a.x, b.x), fmaxf(a.y, b.y), fmaxf(a.z, b.z)}; }
-static inline float vec3_max_abs(vec3 a) { return fmaxf(fabsf(a.x), fmaxf(fabsf(a.y), fabsf(a.z))); }
+/* A NaN of b does not count. */
+static inline vec3 vec3_min(vec3 a, vec3 b)
+{
+    return (vec3){float_min(b.x, a.x), float_min(b.y, a.y), float_min(b.z, a.z)};
+}
+static inline vec3 vec3_max(vec3 a, vec3 b)
+{
+    return (vec3){float_max(b.x, a.x), float_max(b.y, a.y), float_max(b.z, a.z)};
+}
+static inline float vec3_max_abs(vec3 a) { return float_max(fabsf(a.x), float_max(fabsf(a.y), fabsf(a.z))); }
 static inline bool vec3_is_zero(vec3 a) { return a.x == 0.0f && a.y == 0.0f && a.z == 0.0f; }
 static inline bool vec3_is_finite(vec3 a) { return isfinite(a.x) && isfinite(a.y) && isfinite(a.z); }
 /* n or -n, whichever lies on the side of v */
 static inline vec3 vec3_face_forward(vec3 n, vec3 v) { return vec3_dot(n, v) < 0.0f ? vec3_negate(n) : n; }
 
 /* At most the largest float below 1: for random numbers of [0, 1), which rounding may bring to 1. */
-static inline float float_below_one(float x) { return fminf(x, 0x1.fffffep-1f); }
+static inline float float_below_one(float x) { return float_min(x, 0x1.fffffep-1f); }
 
 static inline rgb rgb_make(float r, float g, float b) { return (rgb){r, g, b}; }
 static inline rgb rgb_gray(float v) { return (rgb){v, v, v}; }
@@ -62,12 +71,6 @@ static inline rgb rgb_add(rgb a, rgb b) { return (rgb){a.r + b.r, a.g + b.g, a.b
 static inline rgb rgb_sub(rgb a, rgb b) { return (rgb){a.r - b.r, a.g - b.g, a.b - b.b}; }
 static inline rgb rgb_mul(rgb a, rgb b) { return (rgb){a.r * b.r, a.g * b.g, a.b * b.b}; }
 static inline rgb rgb_scale(rgb a, float s) { return (rgb){a.r * s, a.g * s, a.b * s}; }
-/* fmaxf without a call, which the compiler would make of that: a NaN does not count. */
-static inline float float_max(float a, float b)
-{
-    float larger = a > b ? a : b;
-    return larger == larger ? larger : a;
-}
 /* which ? a : b without a branch, for where it would be guessed wrong: by their bits. */
 static inline float float_select(bool which, float a, float b)
 {
@@ -78,7 +81,12 @@ static inline float float_select(bool which, float a, float b)
     memcpy(&a, &a_bits, sizeof a);
     return a;
 }
-static inline float rgb_max(rgb a) { return float_max(a.r, float_max(a.g, a.b)); }
+/* A NaN does not count. */
+static inline float rgb_max(rgb a)
+{
+    const float of_two = float_max(a.b, a.g), known = of_two == of_two ? of_two : a.b, all = float_max(known, a.r);
+    return all == all ? all : known;
+}
 static inline bool rgb_is_black(rgb a) { return a.r == 0.0f && a.g == 0.0f && a.b == 0.0f; }
 static inline bool rgb_is_finite(rgb a) { return isfinite(a.r) && isfinite(a.g) && isfinite(a.b); }
 /* Relative luminance, Rec. 709 primaries (ITU-R BT.709-6). */

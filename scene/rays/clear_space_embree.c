@@ -85,7 +85,7 @@ static float height_of(const shape *at, uint32_t primitive_index, vec3 normal)
     if (at->kind != SHAPE_MESH)
         return INFINITY;
     triangle t = triangle_of(&at->as.mesh, primitive_index);
-    return fmaxf(vec3_dot(t.a, normal), fmaxf(vec3_dot(t.b, normal), vec3_dot(t.c, normal)));
+    return float_max(vec3_dot(t.a, normal), float_max(vec3_dot(t.b, normal), vec3_dot(t.c, normal)));
 }
 
 /* Whether rays end at all of it. */
@@ -117,7 +117,7 @@ static bool is_below(search *q, const shape *at, uint32_t primitive_index, const
     }
     if (!has_own_plane || !is_level(q, at, primitive_index, point))
         return false;
-    space->margin = fmaxf(space->margin, point->epsilon);
+    space->margin = float_max(space->margin, point->epsilon);
     return true;
 }
 
@@ -144,7 +144,7 @@ static float distance_to_obstacle(search *q, uint32_t shape_index, uint32_t prim
     bool is_own = shape_index == space->shape_index && (primitive_index == space->primitive_index || is_sphere(at));
     if (is_own || is_below(q, at, primitive_index, &point))
         return INFINITY;
-    return fmaxf(distance_to(q, at, primitive_index) - point.epsilon, 0.0f);
+    return float_max(distance_to(q, at, primitive_index) - point.epsilon, 0.0f);
 }
 
 /* Makes the ball smaller where a surface reaches into it. Returns whether it does. out_radius: of where surfaces may be
@@ -238,7 +238,7 @@ static bool find_ball(const scene *s, float radius, clear_space *space)
                 .space = space,
                 .own_margin = space->margin,
                 .rounding_most =
-                    fmaxf(vec3_max_abs(s->bounds_min), vec3_max_abs(s->bounds_max)) * SHAPE_EPSILON_RELATIVE};
+                    float_max(vec3_max_abs(s->bounds_min), vec3_max_abs(s->bounds_max)) * SHAPE_EPSILON_RELATIVE};
     while ((space->radius = find_obstacle(&q, radius)) < radius && space->plane_count < CLEAR_SPACE_PLANES &&
            q.surfaces <= SURFACES_MOST && part_from_obstacle(&q, &space->plane[space->plane_count]))
         space->plane_count++;
@@ -257,7 +257,7 @@ void clear_space_find(const scene *s, vec3 center, vec3 normal, float radius, cl
         space = own;
         if (!find_ball(s, radius, &space))
             continue;
-        space.radius = fmaxf(space.radius * (1.0f - ROUNDING) - space.margin, 0.0f);
+        space.radius = float_max(space.radius * (1.0f - ROUNDING) - space.margin, 0.0f);
         *out_space = space;
         return;
     }
@@ -268,7 +268,7 @@ static bool passes_sphere(const quadric *sphere, float margin, vec3 from, vec3 t
 {
     vec3 way = vec3_sub(to, from), toward = vec3_sub(sphere->center, from);
     float square = vec3_dot(way, way), along = vec3_dot(toward, way), least = sphere->uniform_radius + margin;
-    float share = square > 0.0f ? fminf(fmaxf(along / square, 0.0f), 1.0f) : 0.0f;
+    float share = square > 0.0f ? float_min(float_max(along / square, 0.0f), 1.0f) : 0.0f;
     return vec3_length_squared(vec3_sub(toward, vec3_scale(way, share))) > least * least;
 }
 

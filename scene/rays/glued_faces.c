@@ -19,7 +19,7 @@ static const float COSINE_MIN = 1e-3f;
 float glued_faces_window(const surface_hit *hit, vec3 direction)
 {
     float along = fabsf(vec3_dot(hit->geometric_normal, direction));
-    return WINDOW_EPSILONS * hit->epsilon / fmaxf(along, COSINE_MIN * vec3_length(direction));
+    return WINDOW_EPSILONS * hit->epsilon / float_max(along, COSINE_MIN * vec3_length(direction));
 }
 
 bool glued_faces_touch(const surface_hit *glass, const surface_hit *opaque)
@@ -54,7 +54,7 @@ typedef struct search {
 /* A part of a box in common with another, with some room for rounding. */
 static bool overlap(const box *a, const box *b)
 {
-    float room = WINDOW_EPSILONS * SHAPE_EPSILON_RELATIVE * fmaxf(vec3_max_abs(a->low), vec3_max_abs(a->high));
+    float room = WINDOW_EPSILONS * SHAPE_EPSILON_RELATIVE * float_max(vec3_max_abs(a->low), vec3_max_abs(a->high));
     return a->low.x <= b->high.x + room && b->low.x <= a->high.x + room && a->low.y <= b->high.y + room &&
            b->low.y <= a->high.y + room && a->low.z <= b->high.z + room && b->low.z <= a->high.z + room;
 }
@@ -165,7 +165,7 @@ static void try_glass(search *q, const shape *at, uint32_t instance_index)
     const uint32_t step = m->triangle_count / TRIANGLES_MAX + 1;
     for (uint32_t i = 0; i < m->triangle_count && q->trials > 0 && !is_marked(q, at); i += step) {
         float share = at->area > 0.0f ? area_of(m, i) / at->area : 0.0f;
-        try_triangle(q, at, instance_index, i, 1 + (uint32_t)(fminf(share, 1.0f) * POINTS_BY_AREA));
+        try_triangle(q, at, instance_index, i, 1 + (uint32_t)(float_min(share, 1.0f) * POINTS_BY_AREA));
     }
 }
 

@@ -10,8 +10,8 @@ static const float SPREAD_MAX = 2.0f;
 
 ray_cone ray_cone_scattered(const ray_cone *c, float pdf_solid_angle)
 {
-    float spread = fminf(SPREAD_OF_DENSITY / sqrtf(pdf_solid_angle), RAY_CONE_DIFFUSE_SPREAD);
-    spread = fmaxf(spread, fabsf(c->spread));
+    float spread = float_min(SPREAD_OF_DENSITY / sqrtf(pdf_solid_angle), RAY_CONE_DIFFUSE_SPREAD);
+    spread = float_max(spread, fabsf(c->spread));
     return (ray_cone){fabsf(c->width), spread, c->is_coarse};
 }
 
@@ -45,5 +45,5 @@ ray_cone ray_cone_bent(const scene *s, const ray_cone *c, const surface_hit *hit
         float ratio = index > 0.0f ? (is_inside ? index : 1.0f / index) : 1.0f; /* before over behind */
         spread = ratio * c->spread - (1.0f - ratio) * curvature * c->width;
     }
-    return (ray_cone){c->width, fminf(fmaxf(spread, -SPREAD_MAX), SPREAD_MAX), c->is_coarse};
+    return (ray_cone){c->width, float_min(float_max(spread, -SPREAD_MAX), SPREAD_MAX), c->is_coarse};
 }

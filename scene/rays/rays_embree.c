@@ -135,7 +135,7 @@ static void meet_glued(const scene *s, const scene_ray *ray, ray_meeting *in_out
         return;
     fill_hit(s, ray, in_out_met, &glass);
     const float window = glued_faces_window(&glass, ray->direction), t = in_out_met->distance;
-    if (!cast_by_role(s, ray, fmaxf(t - window, 0.0f), t + window, SHAPE_IS_OPAQUE, &behind))
+    if (!cast_by_role(s, ray, float_max(t - window, 0.0f), t + window, SHAPE_IS_OPAQUE, &behind))
         return;
     fill_hit(s, ray, &behind, &face);
     if (glued_faces_touch(&glass, &face))

@@ -52,9 +52,9 @@ static float distance_between(vec3 a, vec3 b) { return sqrtf(vec3_distance_squar
 static void scatter_at(const scene_ray *ray, vec3 from, float distance, const surface_hit *hit, float travelled,
                        surface_hit *out_point)
 {
-    float along = fmaxf(distance - distance_between(from, ray->origin), 0.0f);
+    float along = float_max(distance - distance_between(from, ray->origin), 0.0f);
     if (hit)
-        along = fmaxf(fminf(along, distance_between(ray->origin, hit->position) - hit->epsilon), 0.0f);
+        along = float_max(float_min(along, distance_between(ray->origin, hit->position) - hit->epsilon), 0.0f);
     vec3 back = vec3_negate(ray->direction);
     *out_point = (surface_hit){.position = vec3_add_scaled(ray->origin, ray->direction, along),
                                .geometric_normal = back,

@@ -53,8 +53,8 @@ static double distance_to_see(double axes[3][3], const double half[3])
         double p[3];
         for (int i = 0; i < 3; i++)
             p[i] = corner >> i & 1 ? half[i] : -half[i];
-        double across = fmax(fabs(dot(p, axes[0])), fabs(dot(p, axes[1])));
-        distance = fmax(distance, across * MARGIN / TAN_HALF_FOV - dot(p, axes[2]));
+        double across = double_max(fabs(dot(p, axes[0])), fabs(dot(p, axes[1])));
+        distance = double_max(distance, across * MARGIN / TAN_HALF_FOV - dot(p, axes[2]));
     }
     return distance;
 }

@@ -16,7 +16,7 @@ affine instance_at(const scene *s, uint32_t instance_index, float time)
     const affine *steps = s->instance_steps + i->first_step;
     if (i->step_count == 1)
         return steps[0];
-    float at = time * (float)(i->step_count - 1), step = fminf(floorf(at), (float)(i->step_count - 2));
+    float at = time * (float)(i->step_count - 1), step = float_min(floorf(at), (float)(i->step_count - 2));
     return affine_lerp(&steps[(uint32_t)step], &steps[(uint32_t)step + 1], at - step);
 }
 
@@ -67,7 +67,8 @@ static float epsilon_in_world(const affine *a, const double cofactors[3][3], dou
                                                 fabs(cofactors[2][i]) * from[2]) /
                                                fabs(determinant);
     for (int i = 0; i < 3; i++)
-        largest = fmax(largest, fabs((double)a->m[i][0]) * lost[0] + fabs((double)a->m[i][1]) * lost[1] +
+        largest =
+            double_max(largest, fabs((double)a->m[i][0]) * lost[0] + fabs((double)a->m[i][1]) * lost[1] +
                                     fabs((double)a->m[i][2]) * lost[2] + (double)relative * fabs((double)a->m[i][3]));
     return (float)largest;
 }

@@ -11,7 +11,7 @@ typedef struct moment {
 static moment moment_of(const mesh *m, float time)
 {
     const float at = time * (float)m->motion_segments,
-                step = fmaxf(fminf(floorf(at), (float)(m->motion_segments - 1)), 0.0f);
+                step = float_max(float_min(floorf(at), (float)(m->motion_segments - 1)), 0.0f);
     const size_t before = (size_t)step * m->vertex_count;
     return (moment){before, before + m->vertex_count, at - step};
 }
@@ -43,8 +43,8 @@ float mesh_moving_reach(const mesh *m, uint32_t triangle, float time)
     const uint32_t *index = m->indices + 3 * (size_t)triangle;
     float reach = 0.0f;
     for (int k = 0; k < 3; k++)
-        reach = fmaxf(reach, fmaxf(vec3_max_abs(m->positions[now.before + index[k]]),
-                                   vec3_max_abs(m->positions[now.after + index[k]])));
+        reach = float_max(reach, float_max(vec3_max_abs(m->positions[now.before + index[k]]),
+                                           vec3_max_abs(m->positions[now.after + index[k]])));
     return reach;
 }
 
@@ -92,8 +92,8 @@ void mesh_move_to_opening(const mesh *m, uint32_t triangle, float time, vec3 *in
                         opening = mesh_moving_values(m, m->positions, triangle, 0.0f);
     double b1, b2, area_now[3], area_then[3];
     find_barycentrics(&now, *in_out_point, &b1, &b2);
-    b1 = fmin(fmax(b1, 0.0), 1.0); /* rounded, it may lie beside the triangle */
-    b2 = fmin(fmax(b2, 0.0), 1.0 - b1);
+    b1 = double_min(double_max(b1, 0.0), 1.0); /* rounded, it may lie beside the triangle */
+    b2 = double_min(double_max(b2, 0.0), 1.0 - b1);
     *in_out_point =
         vec3_add_scaled(vec3_add_scaled(vec3_scale(opening.at[0], (float)(1.0 - b1 - b2)), opening.at[1], (float)b1),
                         opening.at[2], (float)b2);

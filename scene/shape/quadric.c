@@ -79,18 +79,18 @@ static double reach_along(const shape *s, double x, double y, double z)
     if (q->turn < 1.0f && angle_turns(y, x) > (double)q->turn) {
         float sine, cosine;
         sincos_turns(q->turn, &sine, &cosine);
-        arc = fmax(x, (double)cosine * x + (double)sine * y);
+        arc = double_max(x, (double)cosine * x + (double)sine * y);
     }
     if (s->kind == SHAPE_DISK)
-        return fmax(r * arc, (double)q->inner_radius * arc) + z * (double)q->height;
+        return double_max(r * arc, (double)q->inner_radius * arc) + z * (double)q->height;
     if (s->kind == SHAPE_CYLINDER)
-        return r * arc + fmax(z * z_min, z * z_max);
+        return r * arc + double_max(z * z_min, z * z_max);
     /* on a sphere's meridian, arc sqrt(r^2 - h^2) + z h over the heights h */
     double length = sqrt(arc * arc + z * z), best = length > 0.0 ? r * z / length : 0.0;
     if (arc >= 0.0 && best >= z_min && best <= z_max)
         return r * length;
-    return fmax(arc * sqrt(fmax(0.0, r * r - z_min * z_min)) + z * z_min,
-                arc * sqrt(fmax(0.0, r * r - z_max * z_max)) + z * z_max);
+    return double_max(arc * sqrt(double_max(r * r - z_min * z_min, 0.0)) + z * z_min,
+                      arc * sqrt(double_max(r * r - z_max * z_max, 0.0)) + z * z_max);
 }
 
 void quadric_find_bounds(const shape *s, vec3 *out_min, vec3 *out_max)
@@ -101,7 +101,7 @@ void quadric_find_bounds(const shape *s, vec3 *out_min, vec3 *out_max)
         double up = m[i][3] + reach_along(s, m[i][0], m[i][1], m[i][2]);
         double down = m[i][3] - reach_along(s, -m[i][0], -m[i][1], -m[i][2]);
         /* rounding must not shrink the box */
-        double margin = (fabs(m[i][3]) + fmax(fabs(up), fabs(down)) + (up - down)) * 0x1p-22;
+        double margin = (fabs(m[i][3]) + double_max(fabs(up), fabs(down)) + (up - down)) * 0x1p-22;
         low[i] = (float)(down - margin);
         high[i] = (float)(up + margin);
     }
@@ -122,11 +122,11 @@ void quadric_commit(shape *s)
     q->uniform_radius = is_whole_sphere(s) ? q->radius * (float)scale : 0.0f;
     q->has_even_area = s->kind == SHAPE_DISK || scale > 0.0;
     sincos_turns(q->turn, &q->turn_sin, &q->turn_cos);
-    q->theta_min = angle_turns(sqrt(fmax(0.0, square(r) - square((double)q->z_min))), q->z_min);
-    q->theta_max = angle_turns(sqrt(fmax(0.0, square(r) - square((double)q->z_max))), q->z_max);
+    q->theta_min = angle_turns(sqrt(double_max(square(r) - square((double)q->z_min), 0.0)), q->z_min);
+    q->theta_max = angle_turns(sqrt(double_max(square(r) - square((double)q->z_max), 0.0)), q->z_max);
     vec3 low, high;
     quadric_find_bounds(s, &low, &high);
-    q->epsilon = fmaxf(vec3_max_abs(low), vec3_max_abs(high)) * QUADRIC_EPSILON_RELATIVE;
+    q->epsilon = float_max(vec3_max_abs(low), vec3_max_abs(high)) * QUADRIC_EPSILON_RELATIVE;
 }
 
 /* --- samples --- */
@@ -157,7 +157,7 @@ surface_sample quadric_sample_area(const shape *s, vec2 u)
         normal = sample_uniform_sphere(u);
         point = vec3_scale(normal, q->radius);
     } else {
-        float z = (q->z_max - u.x * (q->z_max - q->z_min)) / q->radius, ring = sqrtf(fmaxf(0.0f, 1.0f - z * z));
+        float z = (q->z_max - u.x * (q->z_max - q->z_min)) / q->radius, ring = sqrtf(float_max(1.0f - z * z, 0.0f));
         normal = (vec3){ring * cosine, ring * sine, z};
         point = vec3_scale(normal, q->radius);
     }
@@ -202,7 +202,7 @@ static vec2 surface_uv(const shape *s, double x, double y, double z)
         v = (z - (double)q->z_min) / ((double)q->z_max - (double)q->z_min);
     else
         v = (angle_turns(sqrt(x * x + y * y), z) - q->theta_min) / (q->theta_max - q->theta_min);
-    return (vec2){(float)(turns / turn), (float)fmin(fmax(v, 0.0), 1.0)};
+    return (vec2){(float)(turns / turn), (float)double_min(double_max(v, 0.0), 1.0)};
 }
 
 /* Far from the origin a small sphere may be a single float: rays then hit its centre, where any direction will do. */

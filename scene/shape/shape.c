@@ -120,10 +120,6 @@ static vec3 mesh_area_vector(const mesh *m, uint32_t triangle, double *out_lengt
                        out_length);
 }
 
-/* Returns the larger of a and |b|, without the call that the compiler makes of fmaxf. */
-static inline float larger_size(float a, float b) { return fabsf(b) > a ? fabsf(b) : a; }
-static inline float largest_size(vec3 a) { return larger_size(larger_size(fabsf(a.x), a.y), a.z); }
-
 void shape_bounds(const shape *s, vec3 *out_min, vec3 *out_max)
 {
     if (s->kind == SHAPE_CURVES) {
@@ -206,7 +202,7 @@ uint32_t shape_pick_triangle(const shape *s, float *in_out_u)
     }
     float before = low > 0 ? m->area_cdf[low - 1] : 0.0f, share = mesh_area_share(m, low);
     if (share > 0.0f)
-        *in_out_u = float_below_one(fmaxf((*in_out_u - before) / share, 0.0f));
+        *in_out_u = float_below_one(float_max((*in_out_u - before) / share, 0.0f));
     return low;
 }
 
@@ -226,7 +222,7 @@ static vec2 numbers_of_triangle(const mesh *m, uint32_t triangle, vec2 at)
 vec2 shape_sample_numbers(const shape *s, uint32_t triangle, vec2 barycentrics)
 {
     vec2 u = numbers_of_triangle(&s->as.mesh, triangle, sample_triangle_inverse(barycentrics));
-    return (vec2){float_below_one(fmaxf(u.x, 0.0f)), float_below_one(fmaxf(u.y, 0.0f))};
+    return (vec2){float_below_one(float_max(u.x, 0.0f)), float_below_one(float_max(u.y, 0.0f))};
 }
 
 bool shape_sample_inverse(const shape *s, const surface_hit *hit, vec2 *out_u)
@@ -301,8 +297,7 @@ static vec3 position_between(const corners *c, float u, float v)
 
 static float corners_epsilon(const corners *c)
 {
-    return larger_size(larger_size(largest_size(c->p0), largest_size(c->p1)), largest_size(c->p2)) *
-           SHAPE_EPSILON_RELATIVE;
+    return float_max(float_max(vec3_max_abs(c->p0), vec3_max_abs(c->p1)), vec3_max_abs(c->p2)) * SHAPE_EPSILON_RELATIVE;
 }
 
 /* Position, normals and epsilon where the vertices move. Not inlined: such meshes are rare, and the caller is hot. */

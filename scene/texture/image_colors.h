@@ -47,9 +47,9 @@ ag_status image_colors_decode(const image_colors_target *target, const image_col
 static inline rgb image_colors_convert(const image_colors *colors, rgb c)
 {
     const float *m = colors->matrix;
-    return rgb_make(fmaxf(m[0] * c.r + m[1] * c.g + m[2] * c.b, 0.0f),
-                    fmaxf(m[3] * c.r + m[4] * c.g + m[5] * c.b, 0.0f),
-                    fmaxf(m[6] * c.r + m[7] * c.g + m[8] * c.b, 0.0f));
+    return rgb_make(float_max(m[0] * c.r + m[1] * c.g + m[2] * c.b, 0.0f),
+                    float_max(m[3] * c.r + m[4] * c.g + m[5] * c.b, 0.0f),
+                    float_max(m[6] * c.r + m[7] * c.g + m[8] * c.b, 0.0f));
 }
 
 #endif

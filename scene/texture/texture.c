@@ -102,14 +102,14 @@ static rgb image_value(const texture_set *set, const texture *t, const lookup *a
     vec2 st = texture_mapping_st(&t->mapping, hit->uv, hit->position);
     if (!t->is_spectrum) {
         float value = t->scale * texture_image_float(picture, t->channel, t->wraps, t->filter, st.x, 1.0f - st.y);
-        return rgb_gray(t->invert ? fmaxf(0.0f, 1.0f - value) : value);
+        return rgb_gray(t->invert ? float_max(1.0f - value, 0.0f) : value);
     }
     const bool is_filtered = at->footprint && (picture->udim ? picture->udim->has_mips : picture->mips != NULL);
     rgb value = is_filtered ? filtered_picture_rgb(t, picture, st, at) : picture_rgb(t, picture, st);
     value = rgb_scale(value, t->scale);
     if (t->invert)
         value = rgb_sub(rgb_gray(1.0f), value);
-    return rgb_make(fmaxf(value.r, 0.0f), fmaxf(value.g, 0.0f), fmaxf(value.b, 0.0f));
+    return rgb_make(float_max(value.r, 0.0f), float_max(value.g, 0.0f), float_max(value.b, 0.0f));
 }
 
 static rgb bilerp(const texture *t, const surface_hit *hit)
@@ -164,7 +164,7 @@ static rgb marble(const texture *t, vec3 point)
         ((double)p.y + (double)(t->variation * texture_fbm(p, t->roughness, t->octaves))) * 0.15915494309189534;
     float sine, cosine;
     sincos_turns(isfinite(turns) ? (float)(turns - floor(turns)) : 0.0f, &sine, &cosine);
-    return marble_color(fminf(fmaxf(0.5f + 0.5f * sine, 0.0f), 1.0f));
+    return marble_color(float_min(float_max(0.5f + 0.5f * sine, 0.0f), 1.0f));
 }
 
 static rgb evaluate(const texture_set *set, const texture *t, const lookup *at)
@@ -266,8 +266,8 @@ static float bound_of_values(const texture *t, const texture_image *picture)
                 row_least += m * (m < 0.0f ? high : low);
                 row_most += m * (m < 0.0f ? low : high);
             }
-            least = fminf(least, row_least);
-            most = fmaxf(most, row_most);
+            least = float_min(least, row_least);
+            most = float_max(most, row_most);
         }
     }
     most *= t->scale;
@@ -284,7 +284,7 @@ static float bound_of_picture(const texture_set *set, const texture *t)
     float most = t->invert ? 1.0f : 0.0f; /* beyond the tiles all is black */
     for (uint32_t k = 0; k < picture->udim->slot_count; k++)
         if (picture->udim->tiles[k])
-            most = fmaxf(most, bound_of_values(t, picture->udim->tiles[k]));
+            most = float_max(most, bound_of_values(t, picture->udim->tiles[k]));
     return most;
 }
 
@@ -306,8 +306,8 @@ static float bound_of(const texture_set *set, const texture *t)
     case TEXTURE_MIX:
         if (!(bound_of_input(set, t, 2) <= 1.0f))
             return INFINITY;
-        return fmaxf(bound_of_input(set, t, 0), bound_of_input(set, t, 1));
-    case TEXTURE_CHECKERBOARD: return fmaxf(bound_of_input(set, t, 0), bound_of_input(set, t, 1));
+        return float_max(bound_of_input(set, t, 0), bound_of_input(set, t, 1));
+    case TEXTURE_CHECKERBOARD: return float_max(bound_of_input(set, t, 0), bound_of_input(set, t, 1));
     default: return INFINITY; /* these are never filtered */
     }
 }

@@ -30,7 +30,7 @@ static double box_mean(float x, float width)
         return is_odd(x) ? -1.0 : 1.0;
     const double half = 0.5 * (double)width;
     const double mean = (wave_integral((double)x + half) - wave_integral((double)x - half)) / (double)width;
-    return fmin(fmax(mean, -1.0), 1.0);
+    return double_min(double_max(mean, -1.0), 1.0);
 }
 
 static double cells_mean(vec3 p, vec3 widths)
@@ -42,7 +42,7 @@ static double cells_mean(vec3 p, vec3 widths)
 static float askew(vec3 v)
 {
     const float x = fabsf(v.x), y = fabsf(v.y), z = fabsf(v.z);
-    return fmaxf(fminf(x, y), fminf(fmaxf(x, y), z));
+    return float_max(float_min(x, y), float_min(float_max(x, y), z));
 }
 
 static bool is_within_cell(float x, float width) { return floorf(x - 0.5f * width) == floorf(x + 0.5f * width); }
@@ -111,7 +111,8 @@ float checkerboard_odd_share(vec3 p, const vec3 axes[2], bool is_solid)
         b = part_axis(sides[1], askew(sides[1]) / ASKEW_MOST, PROBES_IN_SPACE, ASKEW_MOST);
     } else {
         const float width = vec3_length(sides[1]);
-        a = part_axis(sides[0], vec3_length(sides[0]) / fmaxf(width, 1e-6f), PROBES_IN_PLANE, fmaxf(width, ASKEW_MOST));
+        a = part_axis(sides[0], vec3_length(sides[0]) / float_max(width, 1e-6f), PROBES_IN_PLANE,
+                      float_max(width, ASKEW_MOST));
         b = (parts){1, sides[1], sides[1]};
     }
     return (float)(0.5 - 0.5 * parts_mean(p, &a, &b));

@@ -30,7 +30,7 @@ static bool find_ellipse(const texture_level *finest, const texture_footprint *f
     if (!(longest < 1e30f))
         return false;
     out->length = sqrtf(longest);
-    out->width = out->length > 0.0f ? fminf(area / out->length, out->length) : 0.0f;
+    out->width = out->length > 0.0f ? float_min(area / out->length, out->length) : 0.0f;
     vec2 v = difference > 0.0f ? (vec2){root + difference, xy} : (vec2){xy, root - difference};
     const float norm = sqrtf(v.x * v.x + v.y * v.y);
     out->along = norm > 0.0f ? (vec2){v.x / norm, v.y / norm} : (vec2){1.0f, 0.0f};
@@ -81,11 +81,12 @@ rgb texture_filter_rgb(const texture_image *i, texture_wraps wraps, texture_filt
                              filter, s, t);
     if (footprint->is_coarse) {
         const float side = PIXEL_SHARE * e.width, most = (float)coarsest_level(&m->levels[0]);
-        return value_between(m, side > 1.0f ? fminf(log2_by_lines(side), most) : 0.0f, wraps, filter, s, t);
+        return value_between(m, side > 1.0f ? float_min(log2_by_lines(side), most) : 0.0f, wraps, filter, s, t);
     }
     /* each probe is as wide as the side of its pixels over PIXEL_SHARE; their middles cover the rest of the length */
-    const float side = fmaxf(fmaxf(PIXEL_SHARE * e.width, e.length / PROBES_MAX), 1.0f), wide = side / PIXEL_SHARE;
-    const float level = log2_by_lines(side), covered = sqrtf(fmaxf(e.length * e.length - wide * wide, 0.0f));
+    const float side = float_max(float_max(PIXEL_SHARE * e.width, e.length / PROBES_MAX), 1.0f),
+                wide = side / PIXEL_SHARE;
+    const float level = log2_by_lines(side), covered = sqrtf(float_max(e.length * e.length - wide * wide, 0.0f));
     const float wanted = ceilf(covered / side);
     const int count = wanted >= PROBES_MAX ? PROBES_MAX : wanted > 1.0f ? (int)wanted : 1;
     if (count == 1)

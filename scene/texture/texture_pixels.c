@@ -1,6 +1,8 @@
 /* texture_pixels.c: see texture_pixels.h. Threads: pure functions. */
 #include "texture/texture_pixels.h"
 
+#include "math/min_max.h"
+
 #include <math.h>
 #include <stdbool.h>
 
@@ -9,11 +11,11 @@ static float tame(texture_wrap wrap, float x)
 {
     switch (wrap) {
     case TEXTURE_WRAP_REPEAT: return fabsf(x) < 1e9f ? x - floorf(x) : 0.0f;
-    case TEXTURE_WRAP_BLACK: return fminf(fmaxf(x, -1.0f), 2.0f);
+    case TEXTURE_WRAP_BLACK: return float_min(float_max(x, -1.0f), 2.0f);
     case TEXTURE_WRAP_MIRROR:
         x = fabsf(x) < 1e9f ? 0.5f * x - floorf(0.5f * x) : 0.0f;
         return x < 0.5f ? 2.0f * x : 2.0f - 2.0f * x;
-    default: return fminf(fmaxf(x, 0.0f), 1.0f);
+    default: return float_min(float_max(x, 0.0f), 1.0f);
     }
 }
 

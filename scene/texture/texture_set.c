@@ -15,9 +15,9 @@ static float own_step(const texture_set *set, const texture *t)
     if (t->kind != TEXTURE_IMAGE || t->mapping.kind != TEXTURE_MAPPING_UV)
         return STEP;
     const texture_image *picture = set->images[t->image_index];
-    float pixels =
-        fmaxf(fabsf(t->mapping.scale.x) * (float)picture->width, fabsf(t->mapping.scale.y) * (float)picture->height);
-    return pixels > 0.0f ? fminf(fmaxf(0.5f / pixels, STEP_MIN), STEP_MAX) : STEP_MAX;
+    float pixels = float_max(fabsf(t->mapping.scale.x) * (float)picture->width,
+                             fabsf(t->mapping.scale.y) * (float)picture->height);
+    return pixels > 0.0f ? float_min(float_max(0.5f / pixels, STEP_MIN), STEP_MAX) : STEP_MAX;
 }
 
 ag_status texture_set_add(texture_set *set, const texture *item, uint32_t *out_index)
@@ -28,7 +28,7 @@ ag_status texture_set_add(texture_set *set, const texture *item, uint32_t *out_i
         if (item->inputs[i].texture_index != SCENE_NO_TEXTURE) {
             const texture *input = &set->items[item->inputs[i].texture_index];
             cost += input->cost; /* each is at most TEXTURE_MAX_COST */
-            step = fminf(step, input->step);
+            step = float_min(step, input->step);
         }
     if (cost > TEXTURE_MAX_COST)
         return AG_ERROR_SCENE;

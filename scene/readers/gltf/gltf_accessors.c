@@ -46,9 +46,9 @@ static float read_component(const unsigned char *bytes, int type, bool is_normal
     uint32_t u32;
     float f;
     switch (type) {
-    case INT8: memcpy(&i8, bytes, 1); return is_normalized ? fmaxf((float)i8 / 127.0f, -1.0f) : (float)i8;
+    case INT8: memcpy(&i8, bytes, 1); return is_normalized ? float_max((float)i8 / 127.0f, -1.0f) : (float)i8;
     case UINT8: return is_normalized ? (float)*bytes / 255.0f : (float)*bytes;
-    case INT16: memcpy(&i16, bytes, 2); return is_normalized ? fmaxf((float)i16 / 32767.0f, -1.0f) : (float)i16;
+    case INT16: memcpy(&i16, bytes, 2); return is_normalized ? float_max((float)i16 / 32767.0f, -1.0f) : (float)i16;
     case UINT16: memcpy(&u16, bytes, 2); return is_normalized ? (float)u16 / 65535.0f : (float)u16;
     case UINT32: memcpy(&u32, bytes, 4); return is_normalized ? (float)((double)u32 / 4294967295.0) : (float)u32;
     default: memcpy(&f, bytes, 4); return f;

@@ -13,7 +13,8 @@ static const double DEGREES = 180.0 / 3.14159265358979323846;
 
 bool gltf_matrix_axis(const gltf_matrix *m, int axis, double out_axis[3])
 {
-    double largest = fmax(fabs(m->m[0][axis]), fmax(fabs(m->m[1][axis]), fabs(m->m[2][axis]))), square = 0.0;
+    double largest = double_max(fabs(m->m[0][axis]), double_max(fabs(m->m[1][axis]), fabs(m->m[2][axis]))),
+           square = 0.0;
     if (!(largest > 0.0 && isfinite(largest)))
         return false;
     for (int i = 0; i < 3; i++) {
@@ -69,7 +70,7 @@ static ag_status read_perspective(gltf_reader *r, const gltf_value *at, camera *
         return gltf_error(r, &perspective, "its aspectRatio is %g, which should be from 0.001 to 1000", r->aspect);
     double aspect = r->aspect != 0.0 ? r->aspect : DEFAULT_ASPECT;
     double shorter_angle = aspect < 1.0 ? 2.0 * atan(aspect * tan(0.5 * height_angle)) : height_angle;
-    c->fov_degrees = fminf((float)(shorter_angle * DEGREES), 179.999f);
+    c->fov_degrees = float_min((float)(shorter_angle * DEGREES), 179.999f);
     return AG_OK;
 }
 
@@ -137,7 +138,7 @@ void gltf_set_picture_size(gltf_reader *r)
 {
     double aspect = r->aspect != 0.0 ? r->aspect : DEFAULT_ASPECT;
     int64_t longer = (int64_t)LONGER_SIDE,
-            shorter = (int64_t)fmax(1.0, round(LONGER_SIDE * fmin(aspect, 1.0 / aspect)));
+            shorter = (int64_t)double_max(round(LONGER_SIDE * double_min(aspect, 1.0 / aspect)), 1.0);
     r->scene->hints.width = (integer_hint){true, aspect >= 1.0 ? longer : shorter};
     r->scene->hints.height = (integer_hint){true, aspect >= 1.0 ? shorter : longer};
 }

@@ -88,7 +88,7 @@ static ag_status read_spot(gltf_reader *r, const gltf_value *at, light *l)
     int version = exporter_version(r->generator);
     l->as.spot.dims_by_cosine = version > 0 && version < 3005;
     if (r->is_blenders && outer > 0.0)
-        inner = acos(fmin(cos(outer) + (1.0 - cos(outer)) * (1.0 - inner / outer), 1.0));
+        inner = acos(double_min(cos(outer) + (1.0 - cos(outer)) * (1.0 - inner / outer), 1.0));
     light_set_cone(l, inner, outer);
     return AG_OK;
 }

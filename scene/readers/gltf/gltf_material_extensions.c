@@ -55,7 +55,7 @@ static ag_status read_transmission(gltf_reader *r, const gltf_value *at, const g
  * colour) density. */
 static float absorption(const gltf_reader *r, float share, double distance)
 {
-    double depth = r->is_blenders ? fmax(1.0 - (double)share, 0.0) : -log(fmax((double)share, 1e-6));
+    double depth = r->is_blenders ? double_max(1.0 - (double)share, 0.0) : -log(double_max((double)share, 1e-6));
     return (float)(depth / distance);
 }
 

@@ -137,7 +137,7 @@ static ag_status add_picture(importer *i, const import_picture *p, picture_use u
 
 /* Materials */
 
-static float clamp01(float x) { return fminf(fmaxf(x, 0.0f), 1.0f); } /* 0 for NaN */
+static float clamp01(float x) { return float_min(float_max(x, 0.0f), 1.0f); } /* 0 for NaN */
 
 static rgb clamp_color(rgb c) { return rgb_make(clamp01(c.r), clamp01(c.g), clamp01(c.b)); }
 
@@ -193,7 +193,7 @@ static material make_mirror(const import_material *source, rgb diffuse, rgb spec
         return m;
     }
     /* the index that reflects as much as the strongest channel, and a colour for the others */
-    float strongest = fminf(rgb_max(specular), 0.98f), root = sqrtf(strongest);
+    float strongest = float_min(rgb_max(specular), 0.98f), root = sqrtf(strongest);
     m.ior = (1.0f + root) / (1.0f - root);
     m.specular_color = rgb_scale(specular, 1.0f / rgb_max(specular));
     return m;

@@ -70,7 +70,7 @@ static double shorter_fov_degrees(const import_camera *source)
 /* The longer side of the file's picture is 2 aspect long, or 2 / aspect, whatever picture is rendered. */
 static void shift_picture(const import_camera *source, camera *c)
 {
-    const double aspect = aspect_of(source), longer_side = 2.0 * fmax(aspect, 1.0 / aspect);
+    const double aspect = aspect_of(source), longer_side = 2.0 * double_max(aspect, 1.0 / aspect);
     if (!isfinite(source->shift[0] + source->shift[1]))
         return;
     for (int k = 0; k < 2; k++)
@@ -89,7 +89,7 @@ ag_status importer_add_camera(importer *i, const import_camera *source)
     }
     if (source->orthographic_half_width > 0.0f) {
         c.kind = CAMERA_ORTHOGRAPHIC;
-        size = (double)source->orthographic_half_width / fmax(aspect_of(source), 1.0);
+        size = (double)source->orthographic_half_width / double_max(aspect_of(source), 1.0);
     } else {
         c.fov_degrees = (float)shorter_fov_degrees(source);
     }
@@ -127,7 +127,7 @@ static ag_status find_intensity_factor(const importer *i, const import_light *so
         square += away * away;
         radius += 0.25 * (b[k] - a[k]) * (b[k] - a[k]);
     }
-    square = fmax(square, 0.01 * radius); /* a lamp in the very middle */
+    square = double_max(square, 0.01 * radius); /* a lamp in the very middle */
     double attenuation = c + l * sqrt(square);
     *out_factor = PI * square / (attenuation > 0.0 ? attenuation : 1.0);
     return AG_OK;
@@ -216,8 +216,8 @@ ag_status importer_add_light(importer *i, const import_light *light_source)
         l.as.point = (point_source){position, intensity};
         break;
     case IMPORT_LIGHT_SPOT: {
-        double outer = fmin(fmax(0.5 * (double)source.outer_cone, 1e-3), PI); /* NaN: the first */
-        double inner = fmin(fmax(0.5 * (double)source.inner_cone, 0.0), outer);
+        double outer = double_min(double_max(0.5 * (double)source.outer_cone, 1e-3), PI); /* NaN: the first */
+        double inner = double_min(double_max(0.5 * (double)source.inner_cone, 0.0), outer);
         l = light_make(LIGHT_SPOT);
         l.as.spot.position = position;
         l.as.spot.direction = direction;

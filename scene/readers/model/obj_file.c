@@ -72,7 +72,7 @@ static ag_status read_normal(obj *o)
 {
     double v[3];
     AG_TRY(read_vertex(o, 3, 3, v));
-    double largest = fmax(fabs(v[0]), fmax(fabs(v[1]), fabs(v[2])));
+    double largest = double_max(fabs(v[0]), double_max(fabs(v[1]), fabs(v[2])));
     double scale = largest > 0.0 ? 1.0 / largest : 0.0;
     o->normals[o->normal_count++] = vec3_make((float)(v[0] * scale), (float)(v[1] * scale), (float)(v[2] * scale));
     return AG_OK;

@@ -116,7 +116,8 @@ static ag_status smooth_normals(obj *o)
         status = AG_ERROR_MEMORY;
     for (size_t k = 0; k < table.count && status == AG_OK; k++) {
         const double *s = sums[k];
-        double largest = fmax(fabs(s[0]), fmax(fabs(s[1]), fabs(s[2]))), scale = largest > 0.0 ? 1.0 / largest : 0.0;
+        double largest = double_max(fabs(s[0]), double_max(fabs(s[1]), fabs(s[2]))),
+               scale = largest > 0.0 ? 1.0 / largest : 0.0;
         o->smooth[k] = vec3_make((float)(s[0] * scale), (float)(s[1] * scale), (float)(s[2] * scale));
     }
     o->smooth_count = table.count;

@@ -24,16 +24,17 @@ static ag_status convert_rgb(pbrt_parser *parser, parameter *p, size_t width)
         double *c = &p->numbers[i];
         if (c[0] < 0.0 || c[1] < 0.0 || c[2] < 0.0)
             return pbrt_error(parser, p->where, width, "\"rgb %s\" has a negative component", p->name);
-        double largest = fmax(c[0], fmax(c[1], c[2]));
-        p->most_in_file = fmax(p->most_in_file, largest);
+        double largest = double_max(c[0], double_max(c[1], c[2]));
+        p->most_in_file = double_max(p->most_in_file, largest);
         double bound = use == SPECTRUM_REFLECTANCE && largest <= 1.0 ? 1.0 : INFINITY;
         color_matrix_apply(&m, c, c);
-        if (fmin(c[0], fmin(c[1], c[2])) < -1e-3 * largest || fmax(c[0], fmax(c[1], c[2])) > bound + 1e-3)
+        if (double_min(c[0], double_min(c[1], c[2])) < -1e-3 * largest ||
+            double_max(c[0], double_max(c[1], c[2])) > bound + 1e-3)
             log_at_once(parser->log, AG_LOG_WARNING, p->where, "gamut",
                         "\"rgb %s\" is outside the colours of %s: it is clipped, as are any others", p->name,
                         stays_rec709 ? "Rec. 709" : "the working space");
         for (int k = 0; k < 3; k++)
-            c[k] = fmin(fmax(c[k], 0.0), bound);
+            c[k] = double_min(double_max(c[k], 0.0), bound);
     }
     return AG_OK;
 }

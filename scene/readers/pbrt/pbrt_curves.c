@@ -108,17 +108,17 @@ static segment cut(const segment *whole, double from, double to)
  * it strays by that over 8 n^2. */
 static int count_cuts(const segment *s)
 {
-    double bend = 0.0, width = 2.0 * fmax(s->radius[0], s->radius[1]);
+    double bend = 0.0, width = 2.0 * double_max(s->radius[0], s->radius[1]);
     for (int k = 0; k < 2; k++) {
         double square = 0.0;
         for (int i = 0; i < 3; i++) {
             double second = s->p[k][i] - 2.0 * s->p[k + 1][i] + s->p[k + 2][i];
             square += second * second;
         }
-        bend = fmax(bend, sqrt(square));
+        bend = double_max(bend, sqrt(square));
     }
     double pieces = sqrt(0.75 * bend / (DEVIATION * width));
-    return (int)fmin(fmax(ceil(pieces / CURVES_FLAT_PIECES), 1.0), CUTS_MAX);
+    return (int)double_min(double_max(ceil(pieces / CURVES_FLAT_PIECES), 1.0), CUTS_MAX);
 }
 
 /* Computes the normals of a part of a segment whose own normals turn evenly from one to the other, as control points of
@@ -135,7 +135,7 @@ static void turn_normals(const double *const ends[2], double from, double to, do
         unit[1][i] = ends[1][i] / sqrt(length[1]);
         cosine += unit[0][i] * unit[1][i];
     }
-    double angle = acos(fmin(fmax(cosine, -1.0), 1.0)), sine = sin(angle);
+    double angle = acos(double_min(double_max(cosine, -1.0), 1.0)), sine = sin(angle);
     for (int k = 0; k < 4; k++) {
         double t = from + (to - from) * k / 3.0;
         double a = sine > 1e-6 ? sin((1.0 - t) * angle) / sine : 1.0 - t, b = sine > 1e-6 ? sin(t * angle) / sine : t;
@@ -158,12 +158,12 @@ static void part_points(segment *s)
     for (int end = 0; end < 2; end++) {
         double *p = s->p[end ? 3 : 0], *inner = s->p[end ? 2 : 1], near = 0.0;
         for (int i = 0; i < 3; i++)
-            near = fmax(near, fabs(inner[i] - p[i]));
+            near = double_max(near, fabs(inner[i] - p[i]));
         for (int k = 2; k <= 3; k++) {
             const double *next = s->p[end ? 3 - k : k];
             double far = 0.0;
             for (int i = 0; i < 3; i++)
-                far = fmax(far, fabs(next[i] - p[i]));
+                far = double_max(far, fabs(next[i] - p[i]));
             if (near < NEAR * far) {
                 mix(p, next, APART, inner);
                 break;
@@ -179,7 +179,7 @@ typedef enum outcome { ADDED, IS_NOTHING, IS_OUT_OF_REACH, NO_MEMORY } outcome;
 static outcome add_segment(curves *c, const transform *t, double scale, const segment *sets, vec2 span,
                            double (*normals)[3])
 {
-    double length = 0.0, radius = scale * fmax(sets->radius[0], sets->radius[1]);
+    double length = 0.0, radius = scale * double_max(sets->radius[0], sets->radius[1]);
     if (curves_reserve(c, c->segment_count + 1) != AG_OK)
         return NO_MEMORY;
     curve_point *points = c->points + curves_points_of_each(c) * c->segment_count;
@@ -234,7 +234,7 @@ static outcome add_ribbon(curves *c, const transform *t, double scale, segment *
         double deviation = 0.0;
         outcome all = add_parts(c, t, scale, whole, normals, cuts);
         for (uint32_t k = before; k < c->segment_count; k++)
-            deviation = fmax(deviation, curves_fit_ribbon(c, k));
+            deviation = double_max(deviation, curves_fit_ribbon(c, k));
         if (all != ADDED || !(deviation > RIBBON_DEVIATION) || cuts == RIBBON_CUTS_MAX)
             return all;
         c->segment_count = before;

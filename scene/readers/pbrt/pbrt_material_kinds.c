@@ -13,7 +13,8 @@
 
 static rgb clamp_color(rgb c)
 {
-    return rgb_make(fminf(fmaxf(c.r, 0.0f), 1.0f), fminf(fmaxf(c.g, 0.0f), 1.0f), fminf(fmaxf(c.b, 0.0f), 1.0f));
+    return rgb_make(float_min(float_max(c.r, 0.0f), 1.0f), float_min(float_max(c.g, 0.0f), 1.0f),
+                    float_min(float_max(c.b, 0.0f), 1.0f));
 }
 
 static ag_status read_reflectance(pbrt_parser *parser, parameter_list *list, material *m)
@@ -284,7 +285,7 @@ static void pass_over(parameter_list *list, const char *const *names, size_t cou
 
 static rgb hair_absorption(float eumelanin, float pheomelanin)
 {
-    float e = fmaxf(eumelanin, 0.0f), p = fmaxf(pheomelanin, 0.0f);
+    float e = float_max(eumelanin, 0.0f), p = float_max(pheomelanin, 0.0f);
     return rgb_make(0.419f * e + 0.187f * p, 0.697f * e + 0.4f * p, 1.37f * e + 1.05f * p);
 }
 
@@ -355,7 +356,7 @@ static ag_status read_flesh(pbrt_parser *parser, parameter_list *list, const cha
         AG_TRY(parameter_get_rgb(list, parser->log, "sigma_s", &sigma_s));
         AG_TRY(parameter_get_float(list, parser->log, "g", &g));
     }
-    float s = 1.0f - fminf(fmaxf(g, -1.0f), 1.0f);
+    float s = 1.0f - float_min(float_max(g, -1.0f), 1.0f);
     m->reflectance = clamp_color(rgb_make(half_space_reflectance(sigma_a.r, s * sigma_s.r),
                                           half_space_reflectance(sigma_a.g, s * sigma_s.g),
                                           half_space_reflectance(sigma_a.b, s * sigma_s.b)));

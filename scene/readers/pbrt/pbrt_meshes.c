@@ -38,7 +38,7 @@ static vec3 world_normal(const transform *t, bool reverse, vec3 n)
 /* Converts a direction of any length, also one that a float cannot hold. */
 static vec3 float_direction(const double *n)
 {
-    double largest = fmax(fabs(n[0]), fmax(fabs(n[1]), fabs(n[2])));
+    double largest = double_max(fabs(n[0]), double_max(fabs(n[1]), fabs(n[2])));
     if (!(largest > 0.0))
         return (vec3){0.0f, 0.0f, 0.0f};
     return (vec3){(float)(n[0] / largest), (float)(n[1] / largest), (float)(n[2] / largest)};

@@ -163,7 +163,7 @@ static ag_status add_lamps(pbrt_parser *parser, const pbrt_object *o, const tran
         AG_TRY(shape_copy(&lamp->shape, world_from_object, &copy));
         vec3 low, high;
         shape_bounds(&copy, &low, &high);
-        if (!(fmaxf(vec3_max_abs(low), vec3_max_abs(high)) <= PBRT_MAX_COORDINATE)) {
+        if (!(float_max(vec3_max_abs(low), vec3_max_abs(high)) <= PBRT_MAX_COORDINATE)) {
             shape_reset(&copy);
             return pbrt_error(parser, where, strlen("ObjectInstance"),
                               "a lamp of object \"%s\" reaches beyond 1e18 units in world space", o->name);

@@ -42,7 +42,7 @@ static patch make_patch(const pbrt_mesh *source, size_t index)
         q.p[i] = source->positions + 3 * (size_t)source->indices[4 * index + (size_t)i];
     for (int i = 0; i < 4; i++) {
         subtract(q.p[EDGES[i][0]], q.p[EDGES[i][1]], d);
-        q.longest = fmax(q.longest, sqrt(dot(d, d)));
+        q.longest = double_max(q.longest, sqrt(dot(d, d)));
     }
     for (int i = 0; i < 3; i++)
         d[i] = (q.p[0][i] - q.p[1][i]) - (q.p[2][i] - q.p[3][i]);
@@ -102,9 +102,9 @@ static size_t count_steps(const pbrt_mesh *source, size_t patch_count)
     for (size_t i = 0; i < patch_count; i++) {
         patch q = make_patch(source, i);
         if (!is_flat(source, i, &q))
-            steps = fmax(steps, fmax(2.0, ceil(sqrt(q.twist / (4.0 * DEVIATION * q.longest)))));
+            steps = double_max(steps, double_max(ceil(sqrt(q.twist / (4.0 * DEVIATION * q.longest))), 2.0));
     }
-    steps = fmin(steps, MAX_STEPS);
+    steps = double_min(steps, MAX_STEPS);
     while (steps > 2.0 && (steps + 1.0) * (steps + 1.0) * (double)patch_count > MAX_GRID_VERTICES)
         steps -= 1.0;
     return (size_t)steps;

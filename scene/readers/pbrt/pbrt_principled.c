@@ -50,7 +50,7 @@ static ag_status read_sheen(pbrt_parser *parser, parameter_list *list, material 
                            "\"sheen_model\" should be \"charlie\", \"schlick\" or \"velvet\", not \"%s\"", model);
     m->sheen_model = MODELS[k].model;
     const float most = sheen_factor_max(m->sheen_model);
-    const float least = fminf(m->sheen.r, fminf(m->sheen.g, m->sheen.b));
+    const float least = float_min(m->sheen.r, float_min(m->sheen.g, m->sheen.b));
     if (!(least >= 0.0f && most_of(list, "sheen", m->sheen) <= most))
         return pbrt_refuse(parser, list, "sheen", "\"sheen\" of this model should be from 0 to %.4g", (double)most);
     return AG_OK;

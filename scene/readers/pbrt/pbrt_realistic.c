@@ -23,7 +23,7 @@ static bool reduce(const double *surfaces, size_t count, double stop_diameter, t
         const double *s = &surfaces[NUMBERS_PER_SURFACE * i];
         double radius = s[0], thickness = s[1], next_index = s[2] != 0.0 ? s[2] : 1.0, diameter = s[3];
         if (radius == 0.0) {
-            pupil = fmin(stop_diameter, diameter) / 2.0 / fabs(height);
+            pupil = double_min(stop_diameter, diameter) / 2.0 / fabs(height);
         } else {
             slope = (index * slope - height * (next_index - index) / radius) / next_index;
             index = next_index;
@@ -103,7 +103,7 @@ ag_status pbrt_settle_realistic(pbrt_parser *parser)
     AG_TRY(parameter_get_int(film, parser->log, "yresolution", &size[1]));
     if (!(diagonal > 0.0f))
         return pbrt_refuse(parser, film, "diagonal", "\"diagonal\" should be above 0");
-    double x = (double)size[0], y = (double)size[1], across = 1e-3 * diagonal * fmin(x, y) / sqrt(x * x + y * y);
+    double x = (double)size[0], y = (double)size[1], across = 1e-3 * diagonal * double_min(x, y) / sqrt(x * x + y * y);
     parser->scene->camera.fov_degrees =
         (float)(2.0 * atan(across / 2.0 / parser->film_distance) * (180.0 / 3.14159265358979323846));
     return AG_OK;

@@ -45,11 +45,11 @@ ag_status pbrt_add_shape(pbrt_parser *parser, const parameter_list *list, shape 
  * world's. */
 static bool is_in_reach_of_floats(const quadric *q)
 {
-    double r = q->radius, largest = fmax(r, 1.0 / r);
+    double r = q->radius, largest = double_max(r, 1.0 / r);
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 3; j++) {
-            largest = fmax(largest, fabs(q->world_from_object.m[i][j]) * fmax(1.0, r));
-            largest = fmax(largest, fabs(q->world_from_object.inverse[i][j]) * fmax(1.0, 1.0 / r));
+            largest = double_max(largest, fabs(q->world_from_object.m[i][j]) * double_max(r, 1.0));
+            largest = double_max(largest, fabs(q->world_from_object.inverse[i][j]) * double_max(1.0 / r, 1.0));
         }
     return largest <= (double)PBRT_MAX_COORDINATE;
 }
@@ -59,8 +59,8 @@ static ag_status add_quadric(pbrt_parser *parser, parameter_list *list, shape *s
     quadric *q = &s->as.quadric;
     q->world_from_object = parser->state.world_from_object;
     s->flip_normal = parser->state.reverse_orientation; /* the outward normal, transformed, is outward in any mirror */
-    double reach = fmax((double)q->radius, fabs((double)q->height));
-    reach = fmax(reach, fmax(fabs((double)q->z_min), fabs((double)q->z_max)));
+    double reach = double_max((double)q->radius, fabs((double)q->height));
+    reach = double_max(reach, double_max(fabs((double)q->z_min), fabs((double)q->z_max)));
     for (int i = 0; i < 3; i++) {
         double sum = fabs(q->world_from_object.m[i][3]);
         for (int j = 0; j < 3; j++)
@@ -88,7 +88,7 @@ static ag_status read_round(pbrt_parser *parser, parameter_list *list, quadric *
         return pbrt_refuse(parser, list, "radius", "\"radius\" should be above 0");
     if (!(phi_max > 0.0f))
         return pbrt_refuse(parser, list, "phimax", "\"phimax\" should be above 0");
-    q->turn = fminf(phi_max / 360.0f, 1.0f);
+    q->turn = float_min(phi_max / 360.0f, 1.0f);
     return AG_OK;
 }
 
@@ -97,8 +97,8 @@ static ag_status read_heights(pbrt_parser *parser, parameter_list *list, float z
 {
     AG_TRY(parameter_get_float(list, parser->log, "zmin", &z_min));
     AG_TRY(parameter_get_float(list, parser->log, "zmax", &z_max));
-    q->z_min = fminf(z_min, z_max);
-    q->z_max = fmaxf(z_min, z_max);
+    q->z_min = float_min(z_min, z_max);
+    q->z_max = float_max(z_min, z_max);
     return AG_OK;
 }
 
@@ -108,8 +108,8 @@ static ag_status read_sphere(pbrt_parser *parser, parameter_list *list)
     quadric *q = &s.as.quadric;
     AG_TRY(read_round(parser, list, q));
     AG_TRY(read_heights(parser, list, -q->radius, q->radius, q));
-    q->z_min = fmaxf(q->z_min, -q->radius);
-    q->z_max = fminf(q->z_max, q->radius);
+    q->z_min = float_max(q->z_min, -q->radius);
+    q->z_max = float_min(q->z_max, q->radius);
     if (!(q->z_min < q->z_max))
         return pbrt_refuse(parser, list, "zmin", "nothing of the sphere lies between \"zmin\" and \"zmax\"");
     parameter_list_warn_unused(list, parser->log);
@@ -153,7 +153,7 @@ static ag_status read_alpha(pbrt_parser *parser, parameter_list *list)
 {
     float alpha = 1.0f;
     AG_TRY(pbrt_get_float_texture(parser, list, "alpha", &alpha, &parser->alpha_texture));
-    parser->alpha = fminf(fmaxf(alpha, 0.0f), 1.0f);
+    parser->alpha = float_min(float_max(alpha, 0.0f), 1.0f);
     return AG_OK;
 }
 

@@ -1,0 +1,12 @@
+/* min_max.h: the lesser and the greater of two numbers, an instruction each; gcc makes a call of fminf and its kind,
+ * for the sake of NaN. Here b is what remains of a NaN a, so bounds come second; a NaN b remains one. Threads: pure
+ * functions. */
+#ifndef AFTERGLOW_MIN_MAX_H
+#define AFTERGLOW_MIN_MAX_H
+
+static inline float float_min(float a, float b) { return a < b ? a : b; }
+static inline float float_max(float a, float b) { return a > b ? a : b; }
+static inline double double_min(double a, double b) { return a < b ? a : b; }
+static inline double double_max(double a, double b) { return a > b ? a : b; }
+
+#endif
