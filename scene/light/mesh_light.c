@@ -12,10 +12,10 @@ enum { WHOLE_MAX = 16 };
 static const double TURNS_LEAST = 1e-5, TURNS_MOST = 0.98;
 static const double TWO_PI = 6.283185307179586477;
 
-static spherical_triangle triangle_seen(const mesh *m, uint32_t triangle, vec3 point)
+static void see_triangle(const mesh *m, uint32_t triangle, vec3 point, spherical_triangle *out)
 {
     const uint32_t *index = m->indices + 3 * (size_t)triangle;
-    return spherical_triangle_seen(point, m->positions[index[0]], m->positions[index[1]], m->positions[index[2]]);
+    spherical_triangle_see(point, m->positions[index[0]], m->positions[index[1]], m->positions[index[2]], out);
 }
 
 /* Returns the solid angle over 2 pi of what may shine towards the point. Where vertex normals decide which side
@@ -45,7 +45,7 @@ bool mesh_light_sample(const shape *lamp, bool is_two_sided, vec3 point, vec2 u,
         spherical_triangle all[WHOLE_MAX];
         double turns[WHOLE_MAX], sum = 0.0;
         for (uint32_t i = 0; i < m->triangle_count; i++) {
-            all[i] = triangle_seen(m, i, point);
+            see_triangle(m, i, point, &all[i]);
             sum += turns[i] = shining_turns(lamp, is_two_sided, &all[i]);
         }
         if (!(sum > 0.0))
@@ -60,11 +60,11 @@ bool mesh_light_sample(const shape *lamp, bool is_two_sided, vec3 point, vec2 u,
             left -= turns[i];
         }
         t = all[picked];
-        u.x = float_below_one((float)fmin(left / turns[picked], 1.0));
+        u.x = float_below_one((float)double_min(left / turns[picked], 1.0));
         probability = turns[picked] / sum;
     } else {
         picked = shape_pick_triangle(lamp, &u.x);
-        t = triangle_seen(m, picked, point);
+        see_triangle(m, picked, point, &t);
         probability = (double)mesh_area_share(m, picked);
     }
     *out_density = density_within(&t, probability);
@@ -78,12 +78,13 @@ bool mesh_light_sample(const shape *lamp, bool is_two_sided, vec3 point, vec2 u,
 mesh_light_density mesh_light_density_of(const shape *lamp, bool is_two_sided, vec3 point, uint32_t triangle)
 {
     const mesh *m = &lamp->as.mesh;
-    spherical_triangle t = triangle_seen(m, triangle, point);
+    spherical_triangle t, other;
+    see_triangle(m, triangle, point, &t);
     if (m->triangle_count > WHOLE_MAX)
         return density_within(&t, (double)mesh_area_share(m, triangle));
     double sum = 0.0;
     for (uint32_t i = 0; i < m->triangle_count; i++) {
-        spherical_triangle other = triangle_seen(m, i, point);
+        see_triangle(m, i, point, &other);
         sum += shining_turns(lamp, is_two_sided, &other);
     }
     double turns = shining_turns(lamp, is_two_sided, &t);

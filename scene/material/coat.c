@@ -46,8 +46,8 @@ bool coat_needs_table(const material *m)
 
 vec3 coat_refract(const coat_point *m, vec3 v)
 {
-    float sin2 = fmaxf(0.0f, 1.0f - v.z * v.z) / (m->ior * m->ior);
-    return (vec3){v.x / m->ior, v.y / m->ior, copysignf(sqrtf(fmaxf(0.0f, 1.0f - sin2)), v.z)};
+    float sin2 = float_max(1.0f - v.z * v.z, 0.0f) / (m->ior * m->ior);
+    return (vec3){v.x / m->ior, v.y / m->ior, copysignf(sqrtf(float_max(1.0f - sin2, 0.0f)), v.z)};
 }
 
 float coat_crossing(const coat_point *m, float cos_theta)
@@ -69,14 +69,16 @@ float coat_entry(const coat_point *m, float cos_theta)
 {
     if (coat_is_smooth(m) && !m->scatters)
         return coat_crossing(m, cos_theta);
-    coat_blend blend = coat_table_find(m->table, m->interface, m->base);
+    coat_blend blend;
+    coat_table_find(m->table, m->interface, m->base, &blend);
     return coat_blend_at(&blend, COAT_ENTRY, fabsf(cos_theta));
 }
 
 /* Light that leaves a coat is spread over a wider solid angle: the squared index. */
 rgb coat_diffuse_albedo(const coat_point *m)
 {
-    coat_blend blend = coat_table_find(m->table, m->interface, m->base);
+    coat_blend blend;
+    coat_table_find(m->table, m->interface, m->base, &blend);
     rgb back = rgb_gray(0.0f), tint = rgb_gray(0.0f), r = m->reflectance;
     for (int k = 0; k < blend.count; k++) {
         back = rgb_add(back, rgb_scale(blend.cells[k]->back, blend.weights[k]));
@@ -138,7 +140,8 @@ void coat_metal_lobe(const coat_point *m, vec3 o, vec3 i, rgb *out_value, float 
     vec3 oc = coat_refract(m, o), ic = coat_refract(m, i);
     if (o.z * i.z <= 0.0f)
         return;
-    coat_blend blend = coat_table_find(m->table, m->interface, m->base);
+    coat_blend blend;
+    coat_table_find(m->table, m->interface, m->base, &blend);
     float scale = coat_blend_at(&blend, COAT_SCALE, fabsf(o.z)) * coat_blend_at(&blend, COAT_SCALE, fabsf(i.z));
     float value;
     if (coat_is_smooth(m)) {
@@ -164,7 +167,8 @@ void coat_metal_lobe(const coat_point *m, vec3 o, vec3 i, rgb *out_value, float 
 bool coat_sample_metal_lobe(const coat_point *m, vec3 o, vec2 u, vec3 *out_i)
 {
     if (!coat_is_smooth(m)) {
-        coat_blend blend = coat_table_find(m->table, m->interface, m->base);
+        coat_blend blend;
+        coat_table_find(m->table, m->interface, m->base, &blend);
         *out_i = reflect_about(o, ggx_sample_visible(outer_facets(m, &blend), o, u));
         return out_i->z > 0.0f;
     }
@@ -182,7 +186,8 @@ rgb coat_metal_lobe_albedo(const coat_point *m, float cos_o)
     rgb metal = fresnel_conductor(MEAN_COSINE, m->eta, m->k);
     if (!m->table)
         return coat_series(m, metal, cos_o);
-    coat_blend blend = coat_table_find(m->table, m->interface, m->base);
+    coat_blend blend;
+    coat_table_find(m->table, m->interface, m->base, &blend);
     return rgb_scale(lobe_color(&blend, metal), coat_blend_at(&blend, COAT_ALBEDO, fabsf(cos_o)));
 }
 
@@ -199,7 +204,8 @@ rgb coat_scattered_albedo(const coat_point *m, float cos_o)
     rgb sum = rgb_gray(0.0f);
     if (!m->table)
         return sum;
-    coat_blend blend = coat_table_find(m->table, m->interface, m->base);
+    coat_blend blend;
+    coat_table_find(m->table, m->interface, m->base, &blend);
     rgb metal = scattering_metal(m);
     for (int k = 0; k < blend.count; k++)
         if (blend.cells[k]->scattered_mean > 0.0f) {
@@ -223,7 +229,8 @@ rgb coat_scattered(const coat_point *m, vec3 o, vec3 i)
     rgb sum = rgb_gray(0.0f);
     if (!m->table)
         return sum;
-    coat_blend blend = coat_table_find(m->table, m->interface, m->base);
+    coat_blend blend;
+    coat_table_find(m->table, m->interface, m->base, &blend);
     rgb metal = scattering_metal(m);
     for (int k = 0; k < blend.count; k++)
         if (blend.cells[k]->scattered_mean > 0.0f) {

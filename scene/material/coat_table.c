@@ -96,15 +96,17 @@ coat_table *coat_table_create(const material *m)
 
 static float side_coordinate(ggx facets)
 {
-    float alpha = fminf(fmaxf(sqrtf(facets.alpha_u * facets.alpha_v), ALPHA_MIN), ALPHA_MAX);
+    float alpha = float_min(float_max(sqrtf(facets.alpha_u * facets.alpha_v), ALPHA_MIN), ALPHA_MAX);
     return sqrtf((alpha - ALPHA_MIN) / (ALPHA_MAX - ALPHA_MIN)) * (float)(SIDE - 1);
 }
 
-coat_blend coat_table_find(const coat_table *table, ggx interface, ggx base)
+void coat_table_find(const coat_table *table, ggx interface, ggx base, coat_blend *out)
 {
-    coat_blend blend = {{table->cells}, {1.0f}, 1};
+    out->cells[0] = table->cells;
+    out->weights[0] = 1.0f;
+    out->count = 1;
     if (table->count == 1 && table->base_count == 1)
-        return blend;
+        return;
     int base_step = 0, step = 0, across = 1, along = 1;
     float base_u = 0.0f, u = 0.0f;
     if (table->base_count > 1) {
@@ -120,18 +122,17 @@ coat_blend coat_table_find(const coat_table *table, ggx interface, ggx base)
         step++; /* past those of a smooth one */
         along = 2;
     }
-    blend.count = 0;
+    out->count = 0;
     for (int a = 0; a < along; a++)
         for (int b = 0; b < across; b++) {
-            blend.cells[blend.count] = &table->cells[(step + a) * table->base_count + base_step + b];
-            blend.weights[blend.count++] = (along == 1 ? 1.0f
-                                            : a        ? u
-                                                       : 1.0f - u) *
-                                           (across == 1 ? 1.0f
-                                            : b         ? base_u
-                                                        : 1.0f - base_u);
+            out->cells[out->count] = &table->cells[(step + a) * table->base_count + base_step + b];
+            out->weights[out->count++] = (along == 1 ? 1.0f
+                                          : a        ? u
+                                                     : 1.0f - u) *
+                                         (across == 1 ? 1.0f
+                                          : b         ? base_u
+                                                      : 1.0f - base_u);
         }
-    return blend;
 }
 
 float coat_blend_at(const coat_blend *blend, coat_function function, float cosine)

@@ -6,14 +6,18 @@
 
 #include "math/vec3.h"
 
+typedef struct double3 {
+    double x, y, z;
+} double3;
+
 /* A triangle whose solid angle is known; corners relative to the point that sees it. */
 typedef struct spherical_triangle {
-    double a[3], b[3], c[3];
+    double3 a, b, c;
     double turns;      /* the solid angle over 2 pi, in [0, 1] */
     bool is_from_back; /* the corners run clockwise as seen from the point, or it is in their plane */
 } spherical_triangle;
 
-spherical_triangle spherical_triangle_seen(vec3 point, vec3 a, vec3 b, vec3 c);
+void spherical_triangle_see(vec3 point, vec3 a, vec3 b, vec3 c, spherical_triangle *out_triangle);
 
 /* Returns the triangle's area, in the corners' units squared. */
 double spherical_triangle_area(const spherical_triangle *t);
