@@ -149,6 +149,8 @@ ag_status environment_create(environment_mapping mapping, uint32_t width, uint32
         }
         e->integral = rgb_make((float)sum[0], (float)sum[1], (float)sum[2]);
         status = distribution_2d_create(width, height, weights, &e->picks);
+        e->picks.values = pixels;
+        e->picks.value_bytes = sizeof *pixels;
     }
     free(weights);
     if (status != AG_OK) {

@@ -80,12 +80,15 @@ void distribution_2d_reset(distribution_2d *d)
     *d = (distribution_2d){0};
 }
 
-/* The cell whose share of [0, 1) u is in, and where in it. */
-static uint32_t find(const float *cdf, const uint16_t *first, uint32_t parts, float u, float *out_within)
+/* The cell whose share of [0, 1) u is in, and where in it. values: of the first cell; NULL: none. */
+static uint32_t find(const float *cdf, const uint16_t *first, uint32_t parts, float u, const char *values,
+                     size_t value_bytes, float *out_within)
 {
     assert(u >= 0.0f && u < 1.0f);
     const uint32_t part = (uint32_t)(u * (float)parts); /* exact: parts is a power of two */
     uint32_t low = first[part], high = first[part + 1];
+    if (values)
+        __builtin_prefetch(values + low * value_bytes);
     while (low < high) {
         uint32_t middle = low + (high - low) / 2;
         if (cdf[middle + 1] > u)
@@ -101,10 +104,11 @@ bool distribution_2d_pick(const distribution_2d *d, vec2 u, distribution_2d_samp
 {
     if (!(d->row_cdf[d->height] > 0.0f))
         return false;
-    out_sample->y = find(d->row_cdf, d->first_rows, d->row_parts, u.y, &out_sample->within.y);
-    out_sample->x =
-        find(d->cell_cdf + (size_t)out_sample->y * (d->width + 1),
-             d->first_cells + (size_t)out_sample->y * (d->cell_parts + 1), d->cell_parts, u.x, &out_sample->within.x);
+    const size_t y = find(d->row_cdf, d->first_rows, d->row_parts, u.y, NULL, 0, &out_sample->within.y);
+    const char *values = d->values ? (const char *)d->values + y * d->width * d->value_bytes : NULL;
+    out_sample->y = (uint32_t)y;
+    out_sample->x = find(d->cell_cdf + y * (d->width + 1), d->first_cells + y * (d->cell_parts + 1), d->cell_parts, u.x,
+                         values, d->value_bytes, &out_sample->within.x);
     out_sample->probability = distribution_2d_probability(d, out_sample->x, out_sample->y);
     return out_sample->probability > 0.0f;
 }

@@ -21,6 +21,10 @@ typedef struct distribution_2d {
     uint32_t row_parts, cell_parts;
     uint16_t *first_rows;  /* [row_parts + 1] */
     uint16_t *first_cells; /* [height][cell_parts + 1] */
+    /* What the caller reads of a cell that is picked, [height][width] of value_bytes: it is fetched while the cell is
+     * still looked for. NULL: nothing; borrowed. */
+    const void *values;
+    size_t value_bytes;
 } distribution_2d;
 
 /* A cell and a point in it, of [0,1)^2. */
