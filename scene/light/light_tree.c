@@ -61,11 +61,8 @@ static query make_query(const light_tree *t, vec3 point, vec3 normal)
                    has_normal ? COSINE_LEAST : 1.0f};
 }
 
-/* fmaxf is no single instruction, for NaN's sake. */
-static inline float greater(float a, float b) { return a > b ? a : b; }
-
 /* The sine of an angle from 0 to half a turn. */
-static inline float sine_of(float cosine) { return sqrtf(greater(1.0f - cosine * cosine, 0.0f)); }
+static inline float sine_of(float cosine) { return sqrtf(float_max(1.0f - cosine * cosine, 0.0f)); }
 
 /* The cosine of the angle a - b, or of 0 where b is larger; and its sine. */
 static inline float cos_beyond(float sin_a, float cos_a, float sin_b, float cos_b)
@@ -76,7 +73,7 @@ static inline float cos_beyond(float sin_a, float cos_a, float sin_b, float cos_
 
 static inline float sin_beyond(float sin_a, float cos_a, float sin_b, float cos_b)
 {
-    float difference = greater(sin_a * cos_b - cos_a * sin_b, 0.0f);
+    float difference = float_max(sin_a * cos_b - cos_a * sin_b, 0.0f);
     return cos_a > cos_b ? 0.0f : difference;
 }
 
@@ -86,27 +83,27 @@ static inline float weigh(const node *n, uint32_t k, const query *q)
 {
     float x = q->point.x - n->center[0][k], y = q->point.y - n->center[1][k], z = q->point.z - n->center[2][k];
     float d2 = x * x + y * y + z * z;
-    float inverse = 1.0f / sqrtf(greater(d2, 1e-30f));
+    float inverse = 1.0f / sqrtf(float_max(d2, 1e-30f));
     /* the half angle of the ball; inside of it all directions */
     float sin2_ball = n->radius2[k] * inverse * inverse;
-    float sin_ball = sqrtf(sin2_ball), cos_ball = sqrtf(greater(1.0f - sin2_ball, 0.0f));
+    float sin_ball = sqrtf(sin2_ball), cos_ball = sqrtf(float_max(1.0f - sin2_ball, 0.0f));
     sin_ball = sin2_ball < 1.0f ? sin_ball : 0.0f;
     cos_ball = sin2_ball < 1.0f ? cos_ball : -1.0f;
     /* from the axis, less the spread of the normals, less the ball */
     float cos_axis = (x * n->axis[0][k] + y * n->axis[1][k] + z * n->axis[2][k]) * inverse;
-    cos_axis = greater(cos_axis, n->behind[k] * cos_axis);
+    cos_axis = float_max(cos_axis, n->behind[k] * cos_axis);
     float sin_axis = sine_of(cos_axis);
     float c = cos_beyond(sin_axis, cos_axis, n->sin_normals[k], n->cos_normals[k]);
     float s = sin_beyond(sin_axis, cos_axis, n->sin_normals[k], n->cos_normals[k]);
     float cos_lamp = cos_beyond(s, c, sin_ball, cos_ball);
-    float brightness = greater(greater(cos_lamp, n->least_cos[k]), COSINE_LEAST);
+    float brightness = float_max(float_max(cos_lamp, n->least_cos[k]), COSINE_LEAST);
     brightness = cos_lamp < n->cos_emission[k] ? 0.0f : brightness;
     /* from the point's normal, less the ball */
     float cos_point = -(x * q->normal.x + y * q->normal.y + z * q->normal.z) * inverse;
     float best = cos_beyond(sine_of(cos_point), cos_point, sin_ball, cos_ball);
-    float received = greater(best, q->least_received);
+    float received = float_max(best, q->least_received);
     received = best < q->horizon ? 0.0f : received;
-    return n->intensity[k] * brightness * received / greater(d2, n->nearest2[k]);
+    return n->intensity[k] * brightness * received / float_max(d2, n->nearest2[k]);
 }
 
 static float weigh_all(const node *n, const query *q, float out_weights[LIGHT_TREE_WIDTH])
