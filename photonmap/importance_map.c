@@ -176,8 +176,8 @@ ag_status importance_map_create(const query_point *points, uint32_t count, impor
     vec3 low = points[0].position, high = low;
     for (uint32_t i = 1; i < count; i++) {
         vec3 p = points[i].position;
-        low = (vec3){float_min(low.x, p.x), float_min(low.y, p.y), float_min(low.z, p.z)};
-        high = (vec3){float_max(high.x, p.x), float_max(high.y, p.y), float_max(high.z, p.z)};
+        low = vec3_min(low, p);
+        high = vec3_max(high, p);
     }
     AG_TRY(build(points, count, 1.0f / (float)count, false, low, high, out_importance));
     out_importance->focus = focus;

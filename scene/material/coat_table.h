@@ -25,7 +25,8 @@ typedef struct coat_blend {
     int count;
 } coat_blend;
 
-/* By a pointer: a copy of what was just written part by part stalls (store forwarding). */
+/* Finds the cells and their weights. It writes to the caller's memory, since a copy of what was just written part by
+ * part would stall (store forwarding). */
 void coat_table_find(const coat_table *table, ggx interface, ggx base, coat_blend *out_blend);
 
 typedef enum coat_function { COAT_ENTRY, COAT_SCALE, COAT_ALBEDO, COAT_SCATTERED, COAT_FORWARD } coat_function;

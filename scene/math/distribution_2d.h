@@ -21,8 +21,8 @@ typedef struct distribution_2d {
     uint32_t row_parts, cell_parts;
     uint16_t *first_rows;  /* [row_parts + 1] */
     uint16_t *first_cells; /* [height][cell_parts + 1] */
-    /* What the caller reads of a cell that is picked, [height][width] of value_bytes: it is fetched while the cell is
-     * still looked for. NULL: nothing; borrowed. */
+    /* The owner may set here what it reads of each cell that is picked, [height][width] of value_bytes, borrowed;
+     * distribution_2d_pick then fetches that while it still looks for the cell. NULL: it fetches nothing. */
     const void *values;
     size_t value_bytes;
 } distribution_2d;
