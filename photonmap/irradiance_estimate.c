@@ -142,7 +142,7 @@ static const float REGION_SHARE_MIN = 0.2f, REGION_PHOTONS_MIN = 10.0f;
 
 static bool region_holds(const photon_map *map, double area, float radius)
 {
-    float share_min = float_min(float_max(REGION_PHOTONS_MIN / (float)map->nearest, REGION_SHARE_MIN), 1.0f);
+    float share_min = float_clamp(REGION_PHOTONS_MIN / (float)map->nearest, REGION_SHARE_MIN, 1.0f);
     float least_radius = float_min(radius, map->mean_radius);
     return area >= (double)share_min * (double)AG_PI * (double)least_radius * (double)least_radius;
 }

@@ -73,7 +73,7 @@ static const double PATHS_PER_PHOTON = 4.0, STORED_SHARE_LEAST = 0.25;
 static float stored_share(uint64_t paths, double stored)
 {
     double share = stored > 0.0 ? (double)paths / (PATHS_PER_PHOTON * stored) : 1.0;
-    return (float)double_min(double_max(share, STORED_SHARE_LEAST), 1.0);
+    return (float)double_clamp(share, STORED_SHARE_LEAST, 1.0);
 }
 
 static float caustic_root(const learner *l)

@@ -113,7 +113,7 @@ static vec3 spherical_direction(camera_kind kind, double x, double y)
         y = y < 0.0 ? -y : 2.0 - y;
         x = 1.0 - x;
     }
-    vec3 d = environment_octahedral_direction(double_min(double_max(x, 0.0), 1.0), double_min(double_max(y, 0.0), 1.0));
+    vec3 d = environment_octahedral_direction(double_clamp(x, 0.0, 1.0), double_clamp(y, 0.0, 1.0));
     return (vec3){d.x, d.z, d.y};
 }
 

@@ -341,13 +341,13 @@ static void add_group(const block_sums *sums, double cost_per_variance, const ch
     double lights = wanted_count(cost_per_variance, sums->by_light, sums->cost_of_light);
     double caustics = wanted_count(cost_per_variance, sums->caustic, sums->cost_of_caustic);
     double camera_rays = wanted_camera_rays(cost_per_variance, sums);
-    camera_rays = double_min(double_max(camera_rays, 1.0 + (double)c->least.further), 1.0 + (double)c->most.further);
-    mean_counts best = {.rays = double_min(double_max(rays, (double)c->least.rays), (double)c->most.rays),
-                        .lights = double_min(double_max(lights, double_max((double)c->least_lights,
-                                                                           (double)c->least.lights * camera_rays)),
-                                             (double)c->most.lights * camera_rays),
-                        .camera_rays = camera_rays,
-                        .caustics = double_min(double_max(caustics, share_that_asks(c->most.caustic_bits)), 1.0)};
+    camera_rays = double_clamp(camera_rays, 1.0 + (double)c->least.further, 1.0 + (double)c->most.further);
+    mean_counts best = {
+        .rays = double_clamp(rays, (double)c->least.rays, (double)c->most.rays),
+        .lights = double_clamp(lights, double_max((double)c->least_lights, (double)c->least.lights * camera_rays),
+                               (double)c->most.lights * camera_rays),
+        .camera_rays = camera_rays,
+        .caustics = double_clamp(caustics, share_that_asks(c->most.caustic_bits), 1.0)};
     camera_part part = split_by(sums, best);
     whole->variance += part.variance;
     whole->cost += part.cost;

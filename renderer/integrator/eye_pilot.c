@@ -265,7 +265,7 @@ static void look_along_rows(void *user, uint64_t begin, uint64_t end, uint64_t b
 static void divide_frame(int paths, float aspect, int *out_width, int *out_height)
 {
     float width = sqrtf((float)paths * aspect);
-    *out_width = (int)float_min(float_max(width + 0.5f, 1.0f), (float)GRID_MAX);
+    *out_width = (int)float_clamp(width + 0.5f, 1.0f, (float)GRID_MAX);
     int height = paths / *out_width;
     *out_height = height < 1 ? 1 : height > GRID_MAX ? GRID_MAX : height;
 }

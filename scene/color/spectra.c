@@ -116,8 +116,7 @@ rgb spectra_sampled(const double *pairs, size_t pair_count, spectrum_use use, co
         return rgb_of(xyz, space);
     }
     for (int i = 0; i < 3; i++)
-        value[i] =
-            use == SPECTRUM_REFLECTANCE ? double_min(double_max(sum[i] / whole[i], 0.0), 1.0) : sum[i] / whole[i];
+        value[i] = use == SPECTRUM_REFLECTANCE ? double_clamp(sum[i] / whole[i], 0.0, 1.0) : sum[i] / whole[i];
     rgb result = rgb_make((float)value[0], (float)value[1], (float)value[2]);
     return use == SPECTRUM_DENSITY ? working_space_light(space, result) : result;
 }

@@ -88,7 +88,7 @@ static rgb convert(const working_space *space, rgb rec709, double bound)
     double c[3] = {(double)rec709.r, (double)rec709.g, (double)rec709.b};
     color_matrix_apply(&space->from_rec709, c, c);
     for (int i = 0; i < 3; i++)
-        c[i] = double_min(double_max(c[i], 0.0), bound);
+        c[i] = double_clamp(c[i], 0.0, bound);
     return rgb_make((float)c[0], (float)c[1], (float)c[2]);
 }
 
@@ -110,15 +110,14 @@ typedef struct artist_metal {
 static artist_metal artist_from_index(double n, double k)
 {
     double below = (n - 1.0) * (n - 1.0) + k * k, above = (n + 1.0) * (n + 1.0) + k * k;
-    double r = double_min(double_max(below / above, 0.0), 0.9999), root = sqrt(r);
+    double r = double_clamp(below / above, 0.0, 0.9999), root = sqrt(r);
     double largest = (1.0 + root) / (1.0 - root), least = (1.0 - r) / (1.0 + r);
     return (artist_metal){r, largest - least > 1e-9 ? (largest - n) / (largest - least) : 0.0};
 }
 
 static void index_from_artist(artist_metal a, double *n, double *k)
 {
-    double r = double_min(double_max(a.reflectance, 0.0), 0.9999), root = sqrt(r),
-           edge = double_min(double_max(a.edge, 0.0), 1.0);
+    double r = double_clamp(a.reflectance, 0.0, 0.9999), root = sqrt(r), edge = double_clamp(a.edge, 0.0, 1.0);
     *n = edge * (1.0 - r) / (1.0 + r) + (1.0 - edge) * (1.0 + root) / (1.0 - root);
     *k = sqrt(double_max((r * (*n + 1.0) * (*n + 1.0) - (*n - 1.0) * (*n - 1.0)) / (1.0 - r), 0.0));
 }

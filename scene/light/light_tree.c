@@ -221,7 +221,7 @@ static light_bounds bounds_of(const lamp *lamps, uint32_t begin, uint32_t end, v
                 const light_bounds *b = &lamps[i].bounds;
                 float cosine = vec3_dot(b->axis, all.axis);
                 cosine = b->two_sided ? fabsf(cosine) : cosine;
-                least = float_min(least, cos_of_sum(float_min(float_max(cosine, -1.0f), 1.0f), b->cos_normals));
+                least = float_min(least, cos_of_sum(float_clamp(cosine, -1.0f, 1.0f), b->cos_normals));
             }
             all.cos_normals = float_max(least - SLACK, -1.0f);
         }

@@ -85,7 +85,7 @@ static uint32_t find_edge(const double *sums, uint32_t size, bool is_y, double w
     double before = from > begin ? sum_in(sums, size, *w) : 0.0;
     *edge = to;
     double share = sum_in(sums, size, *w) - before;
-    *edge = share > 0.0 ? double_min(double_max(from + (to - from) * (wanted - before) / share, from), to) : from;
+    *edge = share > 0.0 ? double_clamp(from + (to - from) * (wanted - before) / share, from, to) : from;
     return low;
 }
 

@@ -78,6 +78,6 @@ bool radiance_map_sample(const radiance_map *m, vec2 u, vec2 *out_u, float *out_
 
 float radiance_map_density(const radiance_map *m, vec2 u)
 {
-    float x = float_min(float_max(u.x * SIZE, 0.0f), SIZE - 1), y = float_min(float_max(u.y * SIZE, 0.0f), SIZE - 1);
+    float x = float_clamp(u.x * SIZE, 0.0f, SIZE - 1), y = float_clamp(u.y * SIZE, 0.0f, SIZE - 1);
     return distribution_2d_probability(&m->picks, (uint32_t)x, (uint32_t)y) * (SIZE * SIZE);
 }

@@ -137,7 +137,7 @@ float bsdf_flux_gain(const bsdf *b)
     if (b->material.kind != MATERIAL_HAIR || b->material.hair.surface == HAIR_FACES_RAYS)
         return 1.0f;
     float met = fabsf(vec3_dot(b->out, b->geometric_normal));
-    return float_min(float_max(LEFT / float_max(met, 1.0f / BSDF_FIBRE_FLUX_MAX), 1.0f), BSDF_FIBRE_FLUX_MAX);
+    return float_clamp(LEFT / float_max(met, 1.0f / BSDF_FIBRE_FLUX_MAX), 1.0f, BSDF_FIBRE_FLUX_MAX);
 }
 
 /* base, m: a diffuse lobe, and the material that it is of. */

@@ -52,7 +52,7 @@ static void normalize_probabilities(bsdf *b)
     float a = b->probabilities[0], sum = a + b->probabilities[1];
     float p = sum > 0.0f ? a / sum : 0.5f;
     if (p > 0.0f && p < 1.0f)
-        p = float_min(float_max(p, PROBABILITY_MIN), 1.0f - PROBABILITY_MIN);
+        p = float_clamp(p, PROBABILITY_MIN, 1.0f - PROBABILITY_MIN);
     b->probabilities[0] = p;
     b->probabilities[1] = 1.0f - p;
 }

@@ -80,7 +80,7 @@ static void fill_forward(coat_cell *cell)
     float mean = cell->scattered_mean > 0.0f ? hemisphere_mean(cell->forward) / cell->scattered_mean : 0.0f;
     for (int number = 0; number < COAT_COSINES; number++) {
         float turn = cell->scattered[number] > 0.0f ? cell->forward[number] / cell->scattered[number] : 0.0f;
-        cell->forward[number] = mean > 1e-3f ? float_min(float_max(turn / sqrtf(mean), 0.0f), 0.95f) : 0.0f;
+        cell->forward[number] = mean > 1e-3f ? float_clamp(turn / sqrtf(mean), 0.0f, 0.95f) : 0.0f;
     }
 }
 

@@ -52,7 +52,7 @@ static inline vec3 coat_direction(float cosine)
 
 static inline float coat_interpolate(const float values[COAT_COSINES], float cosine)
 {
-    float along = sqrtf(float_min(float_max(cosine, 0.0f), 1.0f)) * (float)(COAT_COSINES - 1);
+    float along = sqrtf(float_clamp(cosine, 0.0f, 1.0f)) * (float)(COAT_COSINES - 1);
     int step = along < (float)(COAT_COSINES - 2) ? (int)along : COAT_COSINES - 2;
     float u = along - (float)step;
     return (1.0f - u) * values[step] + u * values[step + 1];

@@ -96,7 +96,7 @@ float coat_lobe_fit_breadth(const coat_point *m, const coat_layers *layers, uint
             if (i.z > 0.0f)
                 add_tangent(&seen, h, ggx_masking_shadowing(facets, out, i) / ggx_masking(facets, out));
         }
-        breadth = float_min(float_max(breadth * wanted / median_tangent(&seen), 0.25f), 4.0f);
+        breadth = float_clamp(breadth * wanted / median_tangent(&seen), 0.25f, 4.0f);
     }
     return breadth * breadth_correction(m);
 }

@@ -96,7 +96,7 @@ coat_table *coat_table_create(const material *m)
 
 static float side_coordinate(ggx facets)
 {
-    float alpha = float_min(float_max(sqrtf(facets.alpha_u * facets.alpha_v), ALPHA_MIN), ALPHA_MAX);
+    float alpha = float_clamp(sqrtf(facets.alpha_u * facets.alpha_v), ALPHA_MIN, ALPHA_MAX);
     return sqrtf((alpha - ALPHA_MIN) / (ALPHA_MAX - ALPHA_MIN)) * (float)(SIDE - 1);
 }
 

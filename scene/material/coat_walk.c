@@ -90,7 +90,7 @@ static vec3 scatter(float g, vec3 along, vec2 u)
     float cosine = 1.0f - 2.0f * u.x, sine, s, c;
     if (fabsf(g) > 1e-3f) {
         float t = (1.0f - g * g) / (1.0f - g + 2.0f * g * u.x);
-        cosine = float_min(float_max((1.0f + g * g - t * t) / (2.0f * g), -1.0f), 1.0f);
+        cosine = float_clamp((1.0f + g * g - t * t) / (2.0f * g), -1.0f, 1.0f);
     }
     sine = sqrtf(float_max(1.0f - cosine * cosine, 0.0f));
     sincos_turns(u.y, &s, &c);

@@ -8,7 +8,7 @@
 /* Where x in [0, 1] lies among even steps. */
 static int find_step(float x, int count, float *out_rest)
 {
-    float along = float_min(float_max(x, 0.0f), 1.0f) * (float)(count - 1);
+    float along = float_clamp(x, 0.0f, 1.0f) * (float)(count - 1);
     int step = (int)along;
     step = step < count - 2 ? step : count - 2;
     *out_rest = along - (float)step;

@@ -32,8 +32,7 @@ rgb hair_absorption_from_reflectance(rgb reflectance, float beta_n)
     const float channels[3] = {reflectance.r, reflectance.g, reflectance.b};
     float sigma_a[3];
     for (int c = 0; c < 3; c++)
-        sigma_a[c] =
-            (float)square(natural_logarithm((double)float_min(float_max(channels[c], REFLECTANCE_MIN), 1.0f)) / fit);
+        sigma_a[c] = (float)square(natural_logarithm((double)float_clamp(channels[c], REFLECTANCE_MIN, 1.0f)) / fit);
     return rgb_make(sigma_a[0], sigma_a[1], sigma_a[2]);
 }
 
@@ -45,7 +44,7 @@ typedef struct inclination {
 
 static inclination inclination_of(float sine)
 {
-    double s = double_min(double_max((double)sine, -1.0), 1.0);
+    double s = double_clamp((double)sine, -1.0, 1.0);
     return (inclination){s, sine_to_cosine(s)};
 }
 
@@ -67,7 +66,7 @@ static double angle_of(double sine, double cosine)
 }
 
 /* The sine of the normal's angle to the ray, [-1, 1]. v grows to the axis' left as the ray comes, phi to its right. */
-static double offset_of(float v) { return double_min(double_max(1.0 - 2.0 * (double)v, -1.0), 1.0); }
+static double offset_of(float v) { return double_clamp(1.0 - 2.0 * (double)v, -1.0, 1.0); }
 
 static hair_crossing crossing_of(const hair_point *p, double offset, inclination o)
 {
@@ -75,7 +74,7 @@ static hair_crossing crossing_of(const hair_point *p, double offset, inclination
     double ior = p->fibre->ior, cos_gamma = sine_to_cosine(offset);
     double bent =
         sqrt(double_max(1e-12, ior * ior - o.sine * o.sine)) / double_max(o.cosine, 1e-6); /* Marschner's eta' */
-    double sin_inside = double_min(double_max(offset / bent, -1.0), 1.0), cos_inside = sine_to_cosine(sin_inside);
+    double sin_inside = double_clamp(offset / bent, -1.0, 1.0), cos_inside = sine_to_cosine(sin_inside);
     double within = 2.0 * cos_inside / double_max(sine_to_cosine(o.sine / ior), 1e-6);
     const double sigma_a[3] = {(double)p->sigma_a.r, (double)p->sigma_a.g, (double)p->sigma_a.b};
     w.reflected = (double)fresnel_dielectric((float)double_min(o.cosine * cos_gamma, 1.0), (float)ior);
@@ -144,7 +143,7 @@ static double sample_longitudinal(inclination o, double precision, vec2 u)
                   precision;
     float sin_turn, cos_turn;
     sincos_turns(u.y, &sin_turn, &cos_turn);
-    return double_min(double_max(-c * o.sine + sine_to_cosine(c) * (double)cos_turn * o.cosine, -1.0), 1.0);
+    return double_clamp(-c * o.sine + sine_to_cosine(c) * (double)cos_turn * o.cosine, -1.0, 1.0);
 }
 
 /* --- azimuthal scattering: its integral over phi is 1 --- */
@@ -158,8 +157,8 @@ static double azimuthal(const hair_fibre *h, double angle)
 static double sample_azimuthal(double u, double width)
 {
     double end = exponential(-HALF_TURN / width), low = end / (1.0 + end), high = 1.0 / (1.0 + end);
-    double p = double_min(double_max(low + (high - low) * u, 1e-12), 1.0 - 1e-12);
-    return double_min(double_max(-width * natural_logarithm((1.0 - p) / p), -HALF_TURN), HALF_TURN);
+    double p = double_clamp(low + (high - low) * u, 1e-12, 1.0 - 1e-12);
+    return double_clamp(-width * natural_logarithm((1.0 - p) / p), -HALF_TURN, HALF_TURN);
 }
 
 /* --- all lobes together --- */
@@ -269,7 +268,7 @@ vec3 hair_sample(const hair_point *point, bool is_flux, float u_lobe, vec2 u)
             break;
         before += p;
     }
-    x = double_min(double_max((x - before) / double_max(p, 1e-12), 0.0), 0x1.fffffep-1);
+    x = double_clamp((x - before) / double_max(p, 1e-12), 0.0, 0x1.fffffep-1);
     inclination o = inclination_of(point->sine);
     double sine = sample_longitudinal(tilted(h, o, lobe), h->precision[lobe], u), cosine = sine_to_cosine(sine);
     double turn = TWO_PI * x;

@@ -38,7 +38,7 @@ static inline const rgb *material_plain_albedo(const material *m) { return m->is
 /* Returns the k with which a conductor of index 1 reflects r at normal incidence, as in pbrt-v4. */
 static inline float material_k_from_reflectance(float r)
 {
-    float clamped = float_min(float_max(r, 0.0f), 0.9999f);
+    float clamped = float_clamp(r, 0.0f, 0.9999f);
     return 2.0f * sqrtf(clamped) / sqrtf(1.0f - clamped);
 }
 

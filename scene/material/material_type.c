@@ -28,8 +28,7 @@ bool material_always(const scene *s, const material *m)
 
 static rgb clamp_to_unit(rgb v)
 {
-    return (rgb){float_min(float_max(v.r, 0.0f), 1.0f), float_min(float_max(v.g, 0.0f), 1.0f),
-                 float_min(float_max(v.b, 0.0f), 1.0f)};
+    return (rgb){float_clamp(v.r, 0.0f, 1.0f), float_clamp(v.g, 0.0f, 1.0f), float_clamp(v.b, 0.0f, 1.0f)};
 }
 
 void material_look_up_color(const material_lookup *at, uint32_t texture_index, rgb *in_out_color)

@@ -11,7 +11,7 @@ static const float COAT_F0 = 0.04f;
 /* Refraction by rough facets needs half vectors, which are lost where the index does not change. */
 static const float ROUGH_IOR_MIN = 1.001f;
 
-static float clamp_to_unit(float x) { return float_min(float_max(x, 0.0f), 1.0f); }
+static float clamp_to_unit(float x) { return float_clamp(x, 0.0f, 1.0f); }
 
 static float coat_alpha(const principled_point *m) { return m->clearcoat_roughness * m->clearcoat_roughness; }
 
@@ -115,8 +115,8 @@ ggx principled_facets(float roughness_u, float roughness_v, float anisotropy)
 static rgb bound_sheen(rgb sheen, sheen_model model)
 {
     const float most = sheen_factor_max(model);
-    return rgb_make(float_min(float_max(sheen.r, 0.0f), most), float_min(float_max(sheen.g, 0.0f), most),
-                    float_min(float_max(sheen.b, 0.0f), most));
+    return rgb_make(float_clamp(sheen.r, 0.0f, most), float_clamp(sheen.g, 0.0f, most),
+                    float_clamp(sheen.b, 0.0f, most));
 }
 
 void principled_resolve(principled_point *p, rgb specular_color)

@@ -5,14 +5,14 @@
 #include "material/sheen_albedo_table.h"
 #include "math/exponential.h"
 
-static float fibre_roughness(float roughness) { return float_min(float_max(roughness, SHEEN_ROUGHNESS_MIN), 1.0f); }
+static float fibre_roughness(float roughness) { return float_clamp(roughness, SHEEN_ROUGHNESS_MIN, 1.0f); }
 
 /* --- the table of albedos --- */
 
 /* Where x in [0, 1] lies among even steps. */
 static int find_step(float x, int count, float *out_rest)
 {
-    const float along = float_min(float_max(x, 0.0f), 1.0f) * (float)(count - 1);
+    const float along = float_clamp(x, 0.0f, 1.0f) * (float)(count - 1);
     int step = (int)along;
     step = step < count - 2 ? step : count - 2;
     *out_rest = along - (float)step;
@@ -27,7 +27,7 @@ static float along_row(const uint16_t *row, int column, float rest)
 static float look_up_row(const uint16_t *row, float cosine)
 {
     float rest;
-    const int column = find_step(sqrtf(float_min(float_max(cosine, 0.0f), 1.0f)), SHEEN_ALBEDO_COSINES, &rest);
+    const int column = find_step(sqrtf(float_clamp(cosine, 0.0f, 1.0f)), SHEEN_ALBEDO_COSINES, &rest);
     return along_row(row, column, rest);
 }
 

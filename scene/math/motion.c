@@ -152,7 +152,7 @@ static void slerp(const double a[4], const double b[4], double t, double q[4])
 
 void motion_at(const motion *m, double time, double out_matrix[3][4])
 {
-    double t = double_min(double_max(m->at_opening + time * (m->at_closing - m->at_opening), 0.0), 1.0), q[4];
+    double t = double_clamp(m->at_opening + time * (m->at_closing - m->at_opening), 0.0, 1.0), q[4];
     slerp(m->rotation[0], m->rotation[1], t, q);
     double w = q[0], x = q[1], y = q[2], z = q[3];
     const double rotation[3][3] = {{1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - w * z), 2.0 * (x * z + w * y)},
@@ -174,7 +174,7 @@ void motion_path_at(const motion_path *path, double time, double out_matrix[3][4
     const motion *first = &path->segments[0];
     const double last = (double)(path->segment_count - 1);
     const double passed = first->at_opening + time * (first->at_closing - first->at_opening); /* segments */
-    motion_at(first + (size_t)double_min(double_max(passed, 0.0), last), time, out_matrix);
+    motion_at(first + (size_t)double_clamp(passed, 0.0, last), time, out_matrix);
 }
 
 /* --- steps --- */

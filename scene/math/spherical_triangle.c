@@ -52,7 +52,7 @@ static double3 turn_towards(double3 from, double3 to, double cosine)
     return (double3){along.x + across.x, along.y + across.y, along.z + across.z};
 }
 
-static double clamp_cosine(double x) { return double_min(double_max(x, -1.0), 1.0); }
+static double clamp_cosine(double x) { return double_clamp(x, -1.0, 1.0); }
 
 /* Sine and cosine of 2 pi u, u in [0, 1], by Taylor series about the nearest quarter turn: right to 1e-15, since
  * cut_cosine takes differences of nearly equal ones; sincos_turns is right to floats alone, in half the steps. */

@@ -19,7 +19,7 @@ static float sample_cosine(float g, float u)
 {
     float s = 1.0f - 2.0f * u, ratio = (1.0f - g * g) / (1.0f - g * s);
     float cosine = 0.5f * (g + (g - s) / (1.0f - g * s) * (1.0f + ratio));
-    return float_min(float_max(cosine, -1.0f), 1.0f);
+    return float_clamp(cosine, -1.0f, 1.0f);
 }
 
 vec3 phase_function_sample(const phase_function *phase, vec3 along, vec2 u)

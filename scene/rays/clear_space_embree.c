@@ -268,7 +268,7 @@ static bool passes_sphere(const quadric *sphere, float margin, vec3 from, vec3 t
 {
     vec3 way = vec3_sub(to, from), toward = vec3_sub(sphere->center, from);
     float square = vec3_dot(way, way), along = vec3_dot(toward, way), least = sphere->uniform_radius + margin;
-    float share = square > 0.0f ? float_min(float_max(along / square, 0.0f), 1.0f) : 0.0f;
+    float share = square > 0.0f ? float_clamp(along / square, 0.0f, 1.0f) : 0.0f;
     return vec3_length_squared(vec3_sub(toward, vec3_scale(way, share))) > least * least;
 }
 

@@ -45,5 +45,5 @@ ray_cone ray_cone_bent(const scene *s, const ray_cone *c, const surface_hit *hit
         float ratio = index > 0.0f ? (is_inside ? index : 1.0f / index) : 1.0f; /* before over behind */
         spread = ratio * c->spread - (1.0f - ratio) * curvature * c->width;
     }
-    return (ray_cone){c->width, float_min(float_max(spread, -SPREAD_MAX), SPREAD_MAX), c->is_coarse};
+    return (ray_cone){c->width, float_clamp(spread, -SPREAD_MAX, SPREAD_MAX), c->is_coarse};
 }

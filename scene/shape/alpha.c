@@ -11,7 +11,7 @@ float alpha_at(const scene *s, const shape *at, const surface_hit *hit)
         alpha *= texture_evaluate_float(&s->textures, at->alpha_texture, hit);
     if (at->alpha_cutoff > 0.0f)
         return alpha >= at->alpha_cutoff ? 1.0f : 0.0f;
-    return float_min(float_max(alpha, 0.0f), 1.0f);
+    return float_clamp(alpha, 0.0f, 1.0f);
 }
 
 float alpha_at_hit(const scene *s, const surface_hit *hit)

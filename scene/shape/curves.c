@@ -33,7 +33,7 @@ static float mixed(float a, float b, float t) { return (1.0f - t) * a + t * b; }
  * *out_share: how much of the way to that next set is done. Only for points that move. */
 static const curve_point *points_before(const curves *c, uint32_t segment, float time, float *out_share)
 {
-    const float passed = float_min(float_max(time, 0.0f), 1.0f) * (float)c->motion_segments;
+    const float passed = float_clamp(time, 0.0f, 1.0f) * (float)c->motion_segments;
     const uint32_t last = c->motion_segments - 1, whole = (uint32_t)passed, step = whole < last ? whole : last;
     *out_share = passed - (float)step;
     return c->points + curves_points_of_each(c) * segment + 4 * (size_t)step;
@@ -150,7 +150,7 @@ static axis_point find_axis_point(const posed *segment, double u)
  * nearest to it as seen along that. u: a parameter near it. */
 static axis_point settle(const posed *segment, const double point[3], const double *direction, double *in_out_u)
 {
-    double u = double_min(double_max(*in_out_u, 0.0), 1.0);
+    double u = double_clamp(*in_out_u, 0.0, 1.0);
     axis_point at = find_axis_point(segment, u);
     for (int step = 0; step < SETTLE_STEPS; step++) {
         double to[3], d[3];
@@ -165,7 +165,7 @@ static axis_point settle(const posed *segment, const double point[3], const doub
             slope = dot(d, d);
         if (!(slope > 0.0))
             break;
-        double moved = double_min(double_max(u + dot(to, d) / slope, 0.0), 1.0);
+        double moved = double_clamp(u + dot(to, d) / slope, 0.0, 1.0);
         if (!(fabs(moved - u) < 0.25)) /* further than Embree errs: another part of the same curve */
             break;
         u = moved;
@@ -294,7 +294,7 @@ static axis_point settle_on_ribbon(const curves *c, const posed *segment, const 
                                    double *out_v, double out_normal[3])
 {
     const ribbon_edge edge = find_ribbon_edge(c, segment);
-    double u = double_min(double_max(*in_out_u, 0.0), 1.0), v = 0.0, along[3], across[3];
+    double u = double_clamp(*in_out_u, 0.0, 1.0), v = 0.0, along[3], across[3];
     axis_point at = find_axis_point(segment, u);
     for (int step = 0;; step++) {
         ribbon_side side = ribbon_side_at(&edge, u);
@@ -303,7 +303,7 @@ static axis_point settle_on_ribbon(const curves *c, const posed *segment, const 
             to[i] = point[i] - at.p[i];
         if (step == 0)
             v = square > 0.0 ? dot(to, side.d) / square : 0.0;
-        v = double_min(double_max(v, -1.0), 1.0);
+        v = double_clamp(v, -1.0, 1.0);
         for (int i = 0; i < 3; i++) {
             across[i] = side.d[i];
             along[i] = at.d[i] + v * side.slope[i];
@@ -313,7 +313,7 @@ static axis_point settle_on_ribbon(const curves *c, const posed *segment, const 
         if (step == SETTLE_STEPS || !(determinant > 1e-6 * aa * square))
             break;
         double du = (dot(to, along) * square - dot(to, across) * ab) / determinant;
-        double moved = double_min(double_max(u + du, 0.0), 1.0);
+        double moved = double_clamp(u + du, 0.0, 1.0);
         if (!(fabs(moved - u) < 0.25)) /* further than Embree errs: another part of the same curve */
             break;
         v += (dot(to, across) * aa - dot(to, along) * ab) / determinant;
@@ -395,7 +395,7 @@ void curves_surface_at(const shape *s, uint32_t primitive_index, float u, vec3 p
     if (s->flip_normal)
         h->geometric_normal = vec3_negate(h->geometric_normal);
     h->shading_normal = h->geometric_normal;
-    h->uv = (vec2){span.x + (float)along * (span.y - span.x), (float)double_min(double_max(0.5 + 0.5 * v, 0.0), 1.0)};
+    h->uv = (vec2){span.x + (float)along * (span.y - span.x), (float)double_clamp(0.5 + 0.5 * v, 0.0, 1.0)};
     h->epsilon = (float)epsilon + reach_of(c, &segment, time) * SHAPE_EPSILON_RELATIVE;
     h->is_flat = false;
     h->is_strand = true;
@@ -408,7 +408,7 @@ surface_differentials curves_differentials(const shape *s, const surface_hit *hi
     const curves *c = &s->as.curves;
     vec2 span = c->spans[hit->primitive_index];
     double share = (double)span.y - (double)span.x;
-    double u = double_min(double_max(((double)hit->uv.x - (double)span.x) / share, 0.0), 1.0);
+    double u = double_clamp(((double)hit->uv.x - (double)span.x) / share, 0.0, 1.0);
     const posed segment = pose_of(c, hit->primitive_index, hit->time);
     axis_point at = find_axis_point(&segment, u);
     double sign = s->flip_normal ? -1.0 : 1.0, aside[3];

@@ -92,8 +92,8 @@ void mesh_move_to_opening(const mesh *m, uint32_t triangle, float time, vec3 *in
                         opening = mesh_moving_values(m, m->positions, triangle, 0.0f);
     double b1, b2, area_now[3], area_then[3];
     find_barycentrics(&now, *in_out_point, &b1, &b2);
-    b1 = double_min(double_max(b1, 0.0), 1.0); /* rounded, it may lie beside the triangle */
-    b2 = double_min(double_max(b2, 0.0), 1.0 - b1);
+    b1 = double_clamp(b1, 0.0, 1.0); /* rounded, it may lie beside the triangle */
+    b2 = double_clamp(b2, 0.0, 1.0 - b1);
     *in_out_point =
         vec3_add_scaled(vec3_add_scaled(vec3_scale(opening.at[0], (float)(1.0 - b1 - b2)), opening.at[1], (float)b1),
                         opening.at[2], (float)b2);

@@ -202,7 +202,7 @@ static vec2 surface_uv(const shape *s, double x, double y, double z)
         v = (z - (double)q->z_min) / ((double)q->z_max - (double)q->z_min);
     else
         v = (angle_turns(sqrt(x * x + y * y), z) - q->theta_min) / (q->theta_max - q->theta_min);
-    return (vec2){(float)(turns / turn), (float)double_min(double_max(v, 0.0), 1.0)};
+    return (vec2){(float)(turns / turn), (float)double_clamp(v, 0.0, 1.0)};
 }
 
 /* Far from the origin a small sphere may be a single float: rays then hit its centre, where any direction will do. */

@@ -164,7 +164,7 @@ static rgb marble(const texture *t, vec3 point)
         ((double)p.y + (double)(t->variation * texture_fbm(p, t->roughness, t->octaves))) * 0.15915494309189534;
     float sine, cosine;
     sincos_turns(isfinite(turns) ? (float)(turns - floor(turns)) : 0.0f, &sine, &cosine);
-    return marble_color(float_min(float_max(0.5f + 0.5f * sine, 0.0f), 1.0f));
+    return marble_color(float_clamp(0.5f + 0.5f * sine, 0.0f, 1.0f));
 }
 
 static rgb evaluate(const texture_set *set, const texture *t, const lookup *at)

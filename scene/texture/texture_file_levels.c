@@ -60,7 +60,7 @@ ag_status texture_file_levels_fetch(const texture_file_levels *l, int level, uin
     float *values = out_pixels;
     for (size_t k = 0; k < count && !l->as_bytes; k++) {
         if (l->curve && !is_alpha)
-            values[k] = l->curve[(size_t)(float_min(float_max(values[k], 0.0f), 1.0f) * 65535.0f + 0.5f)];
+            values[k] = l->curve[(size_t)(float_clamp(values[k], 0.0f, 1.0f) * 65535.0f + 0.5f)];
         if (!isfinite(values[k])) {
             values[k] = 0.0f;
             if (out_bad_count)

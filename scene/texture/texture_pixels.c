@@ -11,11 +11,11 @@ static float tame(texture_wrap wrap, float x)
 {
     switch (wrap) {
     case TEXTURE_WRAP_REPEAT: return fabsf(x) < 1e9f ? x - floorf(x) : 0.0f;
-    case TEXTURE_WRAP_BLACK: return float_min(float_max(x, -1.0f), 2.0f);
+    case TEXTURE_WRAP_BLACK: return float_clamp(x, -1.0f, 2.0f);
     case TEXTURE_WRAP_MIRROR:
         x = fabsf(x) < 1e9f ? 0.5f * x - floorf(0.5f * x) : 0.0f;
         return x < 0.5f ? 2.0f * x : 2.0f - 2.0f * x;
-    default: return float_min(float_max(x, 0.0f), 1.0f);
+    default: return float_clamp(x, 0.0f, 1.0f);
     }
 }
 

@@ -17,7 +17,7 @@ static float own_step(const texture_set *set, const texture *t)
     const texture_image *picture = set->images[t->image_index];
     float pixels = float_max(fabsf(t->mapping.scale.x) * (float)picture->width,
                              fabsf(t->mapping.scale.y) * (float)picture->height);
-    return pixels > 0.0f ? float_min(float_max(0.5f / pixels, STEP_MIN), STEP_MAX) : STEP_MAX;
+    return pixels > 0.0f ? float_clamp(0.5f / pixels, STEP_MIN, STEP_MAX) : STEP_MAX;
 }
 
 ag_status texture_set_add(texture_set *set, const texture *item, uint32_t *out_index)

@@ -206,7 +206,7 @@ ag_status gltf_get_doubles(const gltf_reader *r, const gltf_value *parent, const
 
 static float clamp_with_warning(const gltf_reader *r, const gltf_value *at, double value, double low, double high)
 {
-    double inside = double_min(double_max(value, low), high);
+    double inside = double_clamp(value, low, high);
     if (inside != value && at->key)
         gltf_warn_once(r, at, at->key, "%g is beyond [%g, %g], and brought there", value, low, high);
     return (float)inside;

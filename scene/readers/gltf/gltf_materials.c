@@ -33,7 +33,7 @@ ag_status gltf_read_alpha(gltf_reader *r, const gltf_value *at, const gltf_value
     if (is_mask && cutoff <= 0.0)
         return AG_OK; /* all of it passes */
     out->alpha = factor;
-    out->alpha_cutoff = is_mask ? (float)double_min(double_max(cutoff, (double)FLT_MIN), (double)FLT_MAX) : 0.0f;
+    out->alpha_cutoff = is_mask ? (float)double_clamp(cutoff, (double)FLT_MIN, (double)FLT_MAX) : 0.0f;
     return gltf_get_texture(r, base, texture_key, use, &out->uv_set, &out->alpha_texture);
 }
 
@@ -61,7 +61,7 @@ static ag_status read_normal_map(gltf_reader *r, const gltf_value *at, material 
     gltf_value map;
     AG_TRY(gltf_get_object(r, at, "normalTexture", &map));
     AG_TRY(gltf_get_double(r, &map, "scale", &scale));
-    m->normal_scale = (float)double_min(double_max(scale, -1e6), 1e6);
+    m->normal_scale = (float)double_clamp(scale, -1e6, 1e6);
     return gltf_get_texture(r, at, "normalTexture", NORMAL, &out->uv_set, &m->normal_map_texture);
 }
 

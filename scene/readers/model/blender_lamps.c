@@ -70,9 +70,9 @@ static bool take_library_line(library *l, const char *line)
     if (!last)
         return true;
     if (get_number(line, "<type sid=\"type\"", &number))
-        last->type = (int)float_min(float_max(number, -1.0f), 100.0f);
+        last->type = (int)float_clamp(number, -1.0f, 100.0f);
     else if (get_number(line, "<area_shape ", &number))
-        last->shape = (int)float_min(float_max(number, -1.0f), 100.0f);
+        last->shape = (int)float_clamp(number, -1.0f, 100.0f);
     else if (get_number(line, "<spotblend ", &number))
         last->blend = number;
     else if (get_number(line, "<area_size ", &number))
@@ -84,8 +84,7 @@ static bool take_library_line(library *l, const char *line)
 
 static blender_lamp lamp_of(const extra *e, const char *node)
 {
-    blender_lamp lamp = {.is_area = e->type == BLENDER_AREA_LAMP,
-                         .spot_blend = float_min(float_max(e->blend, 0.0f), 1.0f)};
+    blender_lamp lamp = {.is_area = e->type == BLENDER_AREA_LAMP, .spot_blend = float_clamp(e->blend, 0.0f, 1.0f)};
     const bool is_long = e->shape == 1 || e->shape == BLENDER_ELLIPSE;
     const float round = e->shape == BLENDER_DISK || e->shape == BLENDER_ELLIPSE ? 0.886226925f : 1.0f; /* sqrt pi / 2 */
     lamp.size[0] = e->size[0] * round;

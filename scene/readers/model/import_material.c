@@ -137,7 +137,7 @@ static ag_status add_picture(importer *i, const import_picture *p, picture_use u
 
 /* Materials */
 
-static float clamp01(float x) { return float_min(float_max(x, 0.0f), 1.0f); } /* 0 for NaN */
+static float clamp01(float x) { return float_clamp(x, 0.0f, 1.0f); } /* 0 for NaN */
 
 static rgb clamp_color(rgb c) { return rgb_make(clamp01(c.r), clamp01(c.g), clamp01(c.b)); }
 

@@ -216,8 +216,8 @@ ag_status importer_add_light(importer *i, const import_light *light_source)
         l.as.point = (point_source){position, intensity};
         break;
     case IMPORT_LIGHT_SPOT: {
-        double outer = double_min(double_max(0.5 * (double)source.outer_cone, 1e-3), PI); /* NaN: the first */
-        double inner = double_min(double_max(0.5 * (double)source.inner_cone, 0.0), outer);
+        double outer = double_clamp(0.5 * (double)source.outer_cone, 1e-3, PI); /* NaN: the first */
+        double inner = double_clamp(0.5 * (double)source.inner_cone, 0.0, outer);
         l = light_make(LIGHT_SPOT);
         l.as.spot.position = position;
         l.as.spot.direction = direction;

@@ -76,8 +76,8 @@ static bool has_highlights(const struct aiMaterial *m)
 static void restore_surface_of_fbx(const struct aiMaterial *m, import_material *out)
 {
     const double specular = 2.0 * (double)get_float(m, AI_MATKEY_SHININESS_STRENGTH, 0.25f);
-    const double normal = sqrt(double_min(double_max(0.08 * specular, 1e-6), 0.9));
-    out->metallic = float_min(float_max(get_float(m, AI_MATKEY_REFLECTIVITY, 0.0f), 0.0f), 1.0f);
+    const double normal = sqrt(double_clamp(0.08 * specular, 1e-6, 0.9));
+    out->metallic = float_clamp(get_float(m, AI_MATKEY_REFLECTIVITY, 0.0f), 0.0f, 1.0f);
     out->roughness = (float)double_max(1.0 - sqrt(double_max((double)out->exponent, 0.0)) / 10.0, 0.0);
     out->ior = (float)((1.0 + normal) / (1.0 - normal));
 }
@@ -89,7 +89,7 @@ static bool restore_surface_of_collada(const struct aiMaterial *m, import_materi
 {
     if (out->ior <= 0.0f || out->ior == 1.0f) /* the value of assimp where the file has none */
         return false;
-    out->metallic = float_min(float_max(get_float(m, AI_MATKEY_REFLECTIVITY, 0.0f), 0.0f), 1.0f);
+    out->metallic = float_clamp(get_float(m, AI_MATKEY_REFLECTIVITY, 0.0f), 0.0f, 1.0f);
     out->roughness = 0.5f;
     out->ior = 1.5f;
     return true;

@@ -143,7 +143,7 @@ void assimp_find_maker(assimp_writer *w, const char *path)
 static double full_angle(double half_angle, double blend)
 {
     const double dark = cos(half_angle);
-    return acos(double_min(double_max(dark + (1.0 - dark) * blend, -1.0), 1.0));
+    return acos(double_clamp(dark + (1.0 - dark) * blend, -1.0, 1.0));
 }
 
 /* Restores the lamp that Blender meant, in a file of its own. */
@@ -171,7 +171,7 @@ static void restore_blenders(assimp_writer *w, const struct aiLight *l, assimp_m
             lamp ? (double)lamp->spot_blend : 1.0 - (double)l->mAngleInnerCone / double_max(outer, 1e-6);
         out->outer_cone = (float)outer;
         out->dims_by_cosine = w->has_dimming_spots;
-        out->inner_cone = (float)(2.0 * full_angle(0.5 * outer, double_min(double_max(blend, 0.0), 1.0)));
+        out->inner_cone = (float)(2.0 * full_angle(0.5 * outer, double_clamp(blend, 0.0, 1.0)));
     }
 }
 

@@ -34,7 +34,7 @@ static ag_status convert_rgb(pbrt_parser *parser, parameter *p, size_t width)
                         "\"rgb %s\" is outside the colours of %s: it is clipped, as are any others", p->name,
                         stays_rec709 ? "Rec. 709" : "the working space");
         for (int k = 0; k < 3; k++)
-            c[k] = double_min(double_max(c[k], 0.0), bound);
+            c[k] = double_clamp(c[k], 0.0, bound);
     }
     return AG_OK;
 }

@@ -118,7 +118,7 @@ static int count_cuts(const segment *s)
         bend = double_max(bend, sqrt(square));
     }
     double pieces = sqrt(0.75 * bend / (DEVIATION * width));
-    return (int)double_min(double_max(ceil(pieces / CURVES_FLAT_PIECES), 1.0), CUTS_MAX);
+    return (int)double_clamp(ceil(pieces / CURVES_FLAT_PIECES), 1.0, CUTS_MAX);
 }
 
 /* Computes the normals of a part of a segment whose own normals turn evenly from one to the other, as control points of
@@ -135,7 +135,7 @@ static void turn_normals(const double *const ends[2], double from, double to, do
         unit[1][i] = ends[1][i] / sqrt(length[1]);
         cosine += unit[0][i] * unit[1][i];
     }
-    double angle = acos(double_min(double_max(cosine, -1.0), 1.0)), sine = sin(angle);
+    double angle = acos(double_clamp(cosine, -1.0, 1.0)), sine = sin(angle);
     for (int k = 0; k < 4; k++) {
         double t = from + (to - from) * k / 3.0;
         double a = sine > 1e-6 ? sin((1.0 - t) * angle) / sine : 1.0 - t, b = sine > 1e-6 ? sin(t * angle) / sine : t;

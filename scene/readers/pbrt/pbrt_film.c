@@ -87,10 +87,10 @@ static ag_status read_window(pbrt_parser *parser, parameter_list *film, scene_hi
             height = hints->height.is_given ? hints->height.value : SIZE[1];
     for (int i = 0; i < 4; i++) {
         if (crop) /* in any order, and clipped, as in pbrt */
-            hints->crop_window[i] = double_min(
-                double_max(i % 2 ? double_max(crop[i - 1], crop[i]) : double_min(crop[i], crop[i + 1]), 0.0), 1.0);
+            hints->crop_window[i] =
+                double_clamp(i % 2 ? double_max(crop[i - 1], crop[i]) : double_min(crop[i], crop[i + 1]), 0.0, 1.0);
         else /* beyond the picture is nothing, as in pbrt */
-            hints->crop_window[i] = double_min(double_max(bounds[i] / (double)(i < 2 ? width : height), 0.0), 1.0);
+            hints->crop_window[i] = double_clamp(bounds[i] / (double)(i < 2 ? width : height), 0.0, 1.0);
     }
     hints->has_crop_window = true;
     const char *asked = crop ? "cropwindow" : "pixelbounds";

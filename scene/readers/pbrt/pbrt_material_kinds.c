@@ -13,8 +13,7 @@
 
 static rgb clamp_color(rgb c)
 {
-    return rgb_make(float_min(float_max(c.r, 0.0f), 1.0f), float_min(float_max(c.g, 0.0f), 1.0f),
-                    float_min(float_max(c.b, 0.0f), 1.0f));
+    return rgb_make(float_clamp(c.r, 0.0f, 1.0f), float_clamp(c.g, 0.0f, 1.0f), float_clamp(c.b, 0.0f, 1.0f));
 }
 
 static ag_status read_reflectance(pbrt_parser *parser, parameter_list *list, material *m)
@@ -356,7 +355,7 @@ static ag_status read_flesh(pbrt_parser *parser, parameter_list *list, const cha
         AG_TRY(parameter_get_rgb(list, parser->log, "sigma_s", &sigma_s));
         AG_TRY(parameter_get_float(list, parser->log, "g", &g));
     }
-    float s = 1.0f - float_min(float_max(g, -1.0f), 1.0f);
+    float s = 1.0f - float_clamp(g, -1.0f, 1.0f);
     m->reflectance = clamp_color(rgb_make(half_space_reflectance(sigma_a.r, s * sigma_s.r),
                                           half_space_reflectance(sigma_a.g, s * sigma_s.g),
                                           half_space_reflectance(sigma_a.b, s * sigma_s.b)));

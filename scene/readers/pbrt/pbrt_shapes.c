@@ -153,7 +153,7 @@ static ag_status read_alpha(pbrt_parser *parser, parameter_list *list)
 {
     float alpha = 1.0f;
     AG_TRY(pbrt_get_float_texture(parser, list, "alpha", &alpha, &parser->alpha_texture));
-    parser->alpha = float_min(float_max(alpha, 0.0f), 1.0f);
+    parser->alpha = float_clamp(alpha, 0.0f, 1.0f);
     return AG_OK;
 }
 
