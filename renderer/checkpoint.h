@@ -10,7 +10,7 @@
 #include "rendering.h"
 
 /* The layout's number is raised with every change of the header or of what the film's planes hold. */
-enum { CHECKPOINT_LAYOUT = 9, CHECKPOINT_SETTINGS_MAX = 512 };
+enum { CHECKPOINT_LAYOUT = 10, CHECKPOINT_SETTINGS_MAX = 512 };
 
 /* The header has no gaps: its bytes are written to the file as they are in memory. */
 typedef struct checkpoint_header {

@@ -62,7 +62,7 @@ static double cost_of_maps(const maps *m)
 ag_status split_pilot_run(ag_rendering *r)
 {
     ag_film *film = r->film;
-    if (!film->splits || r->settings.noise_level > 0.0f || film->prior.first || film_count_samples(film).most > 0)
+    if (!film->splits || film->prior.first || film_count_samples(film).most > 0)
         return AG_OK;
     float scale;
     ag_rendering pilot = {.context = r->context,

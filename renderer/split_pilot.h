@@ -10,9 +10,7 @@
 
 #include "rendering.h"
 
-/* Sets the film's first counts, where blocks choose, the number of samples is fixed, and there is none yet; the
- * rendering has its maps and workers. With a level of noise to reach first samples are split into few parts instead:
- * many blocks need no more than the least number of samples, and would get better than was asked for, at a price.
+/* Sets the film's first counts, where blocks choose and there is no sample yet; the rendering has its maps and workers.
  * Errors: those of render_tiles; after AG_PAUSED the next call goes on. */
 ag_status split_pilot_run(ag_rendering *r);
 

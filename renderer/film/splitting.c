@@ -44,6 +44,9 @@ typedef struct choice {
     split_counts least, most;
     uint32_t least_lights; /* of all camera rays */
     double uneven;         /* the share of variance between camera rays that is left in the mean of a pixel's samples */
+    double samples;        /* which a pixel has at least */
+    double variance_allowed; /* of a pixel's first so many samples: noisier ones have more; 0: none has more */
+    double most_of_least;    /* the most samples of a pixel, as a multiple of the least */
 } choice;
 
 /* Returns the variance of a sum over samples. */
@@ -225,28 +228,53 @@ static split_counts best_of_block(const block_sums *sums, const choice *c)
     return best;
 }
 
+/* Returns how many times the least number of samples so many pixels have. variance: of a sample, summed over them. */
+static double times_least(double variance, double pixels, const choice *c)
+{
+    if (!(c->variance_allowed > 0.0))
+        return 1.0;
+    return double_clamp(variance / (c->variance_allowed * pixels), 1.0, c->most_of_least);
+}
+
+/* Returns the variance that a split leaves, and its cost in terms of variance, as the frame counts it. */
+static double loss_by(split_counts counts, double cost_per_variance, const block_sums *sums, const choice *c)
+{
+    const camera_part part = split_by(sums, mean_counts_of(counts));
+    const double times = times_least(part.variance, sums->pixels, c);
+    return part.variance / times + part.cost * times / cost_per_variance;
+}
+
 static split_counts best_counts(const struct ag_film *film, const block_sums *sums, const choice *c)
 {
     double of_frame = film->prior.cost_per_variance;
     if (!(of_frame > 0.0))
         return best_of_block(sums, c);
     uint32_t further = best_further(wanted_camera_rays(of_frame, sums), c->least.further, c->most.further);
-    return counts_at(of_frame, further, sums, c);
+    split_counts by_frame = counts_at(of_frame, further, sums, c);
+    if (!(c->variance_allowed > 0.0))
+        return by_frame;
+    split_counts by_block = best_of_block(sums, c);
+    return loss_by(by_block, of_frame, sums, c) < loss_by(by_frame, of_frame, sums, c) ? by_block : by_frame;
 }
 
 /* Returns how many samples a pixel has at least. */
 static int least_samples(const ag_render_settings *settings)
 {
-    return settings->noise_level > 0.0f ? settings->noise_min_samples : settings->samples_per_pixel;
+    const int most = settings->samples_per_pixel, least = settings->noise_min_samples;
+    return settings->noise_level > 0.0f && least < most ? least : most;
 }
 
 static choice make_choice(const struct ag_film *film, const ag_render_settings *settings)
 {
-    choice c = {noise_shown_scale(settings) * (double)settings->exposure,
-                {.rays = 1, .lights = 1},
-                sample_split_most(settings, true),
-                1,
-                1.0 / sqrt((double)least_samples(settings))};
+    const double samples = (double)least_samples(settings), level = (double)settings->noise_level;
+    choice c = {.scale = noise_shown_scale(settings) * (double)settings->exposure,
+                .least = {.rays = 1, .lights = 1},
+                .most = sample_split_most(settings, true),
+                .least_lights = 1,
+                .uneven = 1.0 / sqrt(samples),
+                .samples = samples,
+                .variance_allowed = level * level * samples,
+                .most_of_least = (double)settings->samples_per_pixel / samples};
     c.most.further = film_further(film, c.most.further);
     return c;
 }
@@ -349,8 +377,9 @@ static void add_group(const block_sums *sums, double cost_per_variance, const ch
         .camera_rays = camera_rays,
         .caustics = double_clamp(caustics, share_that_asks(c->most.caustic_bits), 1.0)};
     camera_part part = split_by(sums, best);
-    whole->variance += part.variance;
-    whole->cost += part.cost;
+    const double times = times_least(part.variance, sums->pixels, c);
+    whole->variance += part.variance / times;
+    whole->cost += part.cost * times;
 }
 
 /* Writes the cost of the frame's camera samples divided by their variance, when all blocks have the best numbers.
@@ -383,10 +412,9 @@ ag_status splitting_begin(struct ag_film *film, const struct ag_film *pilot, dou
 {
     const film_area *all = &film->area;
     const int right = all->x0 + all->width, bottom = all->y0 + all->height;
-    const double samples = (double)settings->samples_per_pixel;
     choice c = make_choice(film, settings);
-    const double fixed = fixed_cost / (samples * (double)settings->width * (double)settings->height);
-    const double clean = FIXED_CLEAN * FIXED_CLEAN * samples;
+    const double fixed = fixed_cost / (c.samples * (double)settings->width * (double)settings->height);
+    const double clean = FIXED_CLEAN * FIXED_CLEAN * c.samples;
     split_prior *prior = &film->prior;
     AG_TRY(find_cost_per_variance(pilot, &c, fixed, clean, &prior->cost_per_variance));
     c.least.further = film_first_split(film, settings).further;

@@ -24,8 +24,12 @@
  * that an edge leaves in their mean is as N^-1.5 (Mitchell, "Consequences of Stratified Sampling in Graphics", 1996).
  * So of S, and of the V that goes into E, the share 1 / sqrt(N) counts.
  *
- * The numbers are chosen for blocks, as in adaptive.h. With a fixed number of samples, the small picture chooses those
- * of the first ones; later ones are chosen by the block's own samples. Costs are numbers of rays, never times. How a
+ * With a level of noise, a block has the least number of samples that there is, or r times as many, as it needs. Most
+ * blocks of a room need no more, and for these N is fixed. So E is the sum of V / r, and F that of r v, and a block takes
+ * the numbers by F / E or those that are best for itself, whichever leaves less of V / r + r v E / F.
+ *
+ * The numbers are chosen for blocks, as in adaptive.h. The small picture chooses those of the first samples; later ones
+ * are chosen by the block's own samples. Costs are numbers of rays, never times. How a
  * sample is split depends on earlier samples alone, and all samples weigh alike: the picture's expectation stays.
  * Flow: film, which sums what sample_split.h says -> [here] -> the next pass. Threads: a pixel belongs to one worker at
  * a time; decisions are made while no tile is rendered. */

@@ -68,12 +68,13 @@ static void add_block(ag_film *film, int x0, made_up block)
         }
 }
 
-static void expect_counts(const ag_film *film, int x, uint32_t rays, uint32_t lights)
+/* first_rays: of each of the samples so far. */
+static void expect_counts(const ag_film *film, int x, uint32_t first_rays, uint32_t rays, uint32_t lights)
 {
     size_t pixel = film_pixel_at(film, x, 3);
     split_counts got = film->splits[pixel].counts;
-    /* the next sample's rays follow those of the first four, which had 16 */
-    assert_int_equal((film->counts[pixel] + got.ray_shift) * got.rays, 16 * film->counts[pixel]);
+    /* the next sample's rays follow those of the first four */
+    assert_int_equal((film->counts[pixel] + got.ray_shift) * got.rays, first_rays * film->counts[pixel]);
     if (got.rays != rays || got.lights != lights)
         fail_msg("%u gather rays, %u light samples where %u and %u are best", got.rays, got.lights, rays, lights);
 }
@@ -89,13 +90,13 @@ static void test_best_numbers(void **state)
     for (size_t k = 0; k < film_area_count(film); k++)
         film->wanted[k] = 16;
     assert_int_equal(splitting_decide(film, &settings, 16), 4);
-    expect_counts(film, 3, 16, 4); /* by each of three camera rays */
+    expect_counts(film, 3, 16, 16, 4); /* by each of three camera rays */
     add_block(film, 0, (made_up){0.04, 0.04, 0.01, 0.008, 0.0});
     add_block(film, FILM_BLOCK, (made_up){.own = 0.04});
     for (int times = 0; times < 2; times++) { /* again changes nothing */
         assert_int_equal(splitting_decide(film, &settings, 16), 16);
-        expect_counts(film, 3, 4, 2);
-        expect_counts(film, 11, 1, 1);
+        expect_counts(film, 3, 16, 4, 2);
+        expect_counts(film, 11, 16, 1, 1);
         assert_int_equal(film->splits[film_pixel_at(film, 3, 3)].counts.caustic_bits, 1);
         assert_int_equal(film->splits[film_pixel_at(film, 11, 3)].counts.caustic_bits, 1);
     }
@@ -138,6 +139,34 @@ static void test_best_numbers_of_frames(void **state)
                      got.lights, cases[i].rays, cases[i].lights);
         ag_film_destroy(film);
         ag_film_destroy(pilot);
+    }
+}
+
+/* With a level of noise, a block that the least number of samples makes quiet enough takes the numbers by the whole
+ * frame, and a block that needs more of them those for itself; where no more are allowed, the frame's again. */
+static void test_best_numbers_at_a_level(void **state)
+{
+    (void)state;
+    /* A quarter of a variance of 1 is shown. By the frame: sqrt(0.01 / 4 * 2400) = 2.4 gather rays and 1.2 light
+     * samples in the quiet block, 24.5 and 12.2 in the noisy one. For itself that has 3.2 and 1.6, as in
+     * test_best_numbers. */
+    static const made_up quiet = {.own = 0.04, .by_ray = 0.04, .by_light = 0.01},
+                         noisy = {.own = 4.0, .by_ray = 4.0, .by_light = 1.0};
+    for (int k = 0; k < 2; k++) {
+        const bool may_have_more = k == 0;
+        ag_render_settings settings = settings_of(0.05f, may_have_more ? 1024 : 16);
+        assert_int_equal(settings.noise_min_samples, 16);
+        ag_film *film = create_film(&settings);
+        const uint32_t first_rays = film->splits[0].counts.rays;
+        film->prior.cost_per_variance = 2400.0;
+        for (size_t pixel = 0; pixel < film_area_count(film); pixel++)
+            film->wanted[pixel] = 16;
+        add_block(film, 0, quiet);
+        add_block(film, FILM_BLOCK, noisy);
+        assert_int_equal(splitting_decide(film, &settings, 16), 16);
+        expect_counts(film, 3, first_rays, 2, 1);
+        expect_counts(film, 11, first_rays, may_have_more ? 4 : 32, may_have_more ? 2 : 16);
+        ag_film_destroy(film);
     }
 }
 
@@ -430,25 +459,27 @@ static void test_checkpoint_of_other(void **state)
 static void test_crops(void **state)
 {
     (void)state;
-    studio *s = open_room(2, 0.0f);
-    ag_film *whole = studio_render(s);
-    static const int crops[][4] = {{5, 19, 3, 22}, {8, 16, 8, 16}, {27, 29, 25, 27}};
-    for (size_t i = 0; i < sizeof crops / sizeof *crops; i++) {
-        const int *crop = crops[i];
-        for (int k = 0; k < 4; k++)
-            s->settings.crop_window[k] = (double)crop[k] / (k < 2 ? 29.0 : 27.0);
-        ag_film *part = studio_render(s);
-        int width = crop[1] - crop[0], told_width, told_height;
-        const float *a = ag_film_pixels(whole, &told_width, &told_height),
-                    *b = ag_film_pixels(part, &told_width, &told_height);
-        assert_true(told_width == width && told_height == crop[3] - crop[2]);
-        for (int y = crop[2]; y < crop[3]; y++)
-            assert_memory_equal(a + 3 * (y * 29 + crop[0]), b + 3 * (y - crop[2]) * width,
-                                3 * (size_t)width * sizeof *a);
-        ag_film_destroy(part);
+    for (int level = 0; level < 2; level++) {
+        studio *s = open_room(2, LEVELS[level]);
+        ag_film *whole = studio_render(s);
+        static const int crops[][4] = {{5, 19, 3, 22}, {8, 16, 8, 16}, {27, 29, 25, 27}};
+        for (size_t i = 0; i < sizeof crops / sizeof *crops; i++) {
+            const int *crop = crops[i];
+            for (int k = 0; k < 4; k++)
+                s->settings.crop_window[k] = (double)crop[k] / (k < 2 ? 29.0 : 27.0);
+            ag_film *part = studio_render(s);
+            int width = crop[1] - crop[0], told_width, told_height;
+            const float *a = ag_film_pixels(whole, &told_width, &told_height),
+                        *b = ag_film_pixels(part, &told_width, &told_height);
+            assert_true(told_width == width && told_height == crop[3] - crop[2]);
+            for (int y = crop[2]; y < crop[3]; y++)
+                assert_memory_equal(a + 3 * (y * 29 + crop[0]), b + 3 * (y - crop[2]) * width,
+                                    3 * (size_t)width * sizeof *a);
+            ag_film_destroy(part);
+        }
+        ag_film_destroy(whole);
+        studio_close(s);
     }
-    ag_film_destroy(whole);
-    studio_close(s);
 }
 
 /* Caustics that are asked for by chance have the mean of those that are asked for always, on the same photons. */
@@ -544,6 +575,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_best_numbers),
         cmocka_unit_test(test_best_numbers_of_frames),
+        cmocka_unit_test(test_best_numbers_at_a_level),
         cmocka_unit_test(test_best_camera_rays),
         cmocka_unit_test(test_blinding_light),
         cmocka_unit_test(test_first_numbers),
