@@ -54,7 +54,7 @@ static void test_dry_run(void **state)
 static void test_samples(void **state)
 {
     (void)state;
-#define ADAPTIVE "--photons=3000", "--size=160x120", "--noise=0.02", "--spp=256", "--stats=a.json", "-o", "a.exr", BOX
+#define ADAPTIVE "--photons=3000", "--size=160x120", "--noise=0.006", "--spp=256", "--stats=a.json", "-o", "a.exr", BOX
     program_run run = RUN("--dry-run", ADAPTIVE);
     expect_exit(&run, 0);
     program_run_reset(&run);
