@@ -96,12 +96,10 @@ static bool has_map_of_its_own(const ag_render_settings *settings)
     return !settings->photon_map_file && settings->photon_paths == 0;
 }
 
-/* Camera samples of the whole frame: with a level of noise, those that it has at least. */
+/* The least number of camera samples of the whole frame. */
 static double sample_count(const ag_render_settings *settings)
 {
-    const bool has_level = settings->noise_level > 0.0f;
-    const int most = settings->samples_per_pixel, least = settings->noise_min_samples;
-    return (double)settings->width * (double)settings->height * (double)(has_level && least < most ? least : most);
+    return (double)settings->width * (double)settings->height * (double)adaptive_least_samples(settings);
 }
 
 static uint64_t automatic_photon_count(const ag_render_settings *settings)

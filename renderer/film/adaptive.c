@@ -13,6 +13,12 @@ typedef struct decision {
     atomic_u64 active; /* blocks that need more; order does not matter: relaxed */
 } decision;
 
+int adaptive_least_samples(const ag_render_settings *settings)
+{
+    const int most = settings->samples_per_pixel, least = settings->noise_min_samples;
+    return settings->noise_level > 0.0f && least < most ? least : most;
+}
+
 uint32_t adaptive_barrier(const struct ag_film *film)
 {
     uint32_t most = 0;
@@ -59,11 +65,10 @@ static void decide_rows(void *user, uint64_t begin, uint64_t end, uint64_t block
 ag_status adaptive_decide(struct ag_film *film, run_context *run, const ag_render_settings *settings, bool *out_is_done)
 {
     uint32_t barrier = adaptive_barrier(film), most = (uint32_t)settings->samples_per_pixel;
-    uint32_t least = (uint32_t)settings->noise_min_samples;
     *out_is_done = false;
     if (barrier == 0) {
         for (size_t i = 0; i < film_area_count(film); i++)
-            film->wanted[i] = least < most ? least : most;
+            film->wanted[i] = (uint32_t)adaptive_least_samples(settings);
         return AG_OK;
     }
     uint32_t step = barrier / 4 > 4 ? barrier / 4 : 4;

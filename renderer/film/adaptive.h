@@ -11,6 +11,9 @@
 #include "film/film.h"
 #include "run_context.h"
 
+/* Returns how many samples each pixel has, at least. */
+int adaptive_least_samples(const ag_render_settings *settings);
+
 /* Returns the number of samples up to which pixels are brought now: the next one at which it is decided. */
 uint32_t adaptive_barrier(const struct ag_film *film);
 

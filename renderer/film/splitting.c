@@ -1,6 +1,7 @@
 /* splitting.c: see splitting.h. */
 #include "film/splitting.h"
 
+#include "film/adaptive.h"
 #include "film/film.h"
 #include "status.h"
 
@@ -257,16 +258,9 @@ static split_counts best_counts(const struct ag_film *film, const block_sums *su
     return loss_by(by_block, of_frame, sums, c) < loss_by(by_frame, of_frame, sums, c) ? by_block : by_frame;
 }
 
-/* Returns how many samples a pixel has at least. */
-static int least_samples(const ag_render_settings *settings)
-{
-    const int most = settings->samples_per_pixel, least = settings->noise_min_samples;
-    return settings->noise_level > 0.0f && least < most ? least : most;
-}
-
 static choice make_choice(const struct ag_film *film, const ag_render_settings *settings)
 {
-    const double samples = (double)least_samples(settings), level = (double)settings->noise_level;
+    const double samples = (double)adaptive_least_samples(settings), level = (double)settings->noise_level;
     choice c = {.scale = noise_shown_scale(settings) * (double)settings->exposure,
                 .least = {.rays = 1, .lights = 1},
                 .most = sample_split_most(settings, true),

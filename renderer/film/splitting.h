@@ -25,8 +25,8 @@
  * So of S, and of the V that goes into E, the share 1 / sqrt(N) counts.
  *
  * With a level of noise, a block has the least number of samples that there is, or r times as many, as it needs. Most
- * blocks of a room need no more, and for these N is fixed. So E is the sum of V / r, and F that of r v, and a block takes
- * the numbers by F / E or those that are best for itself, whichever leaves less of V / r + r v E / F.
+ * blocks of a room need no more, and for these N is fixed. So E is the sum of V / r, and F that of r v, and a block
+ * takes the numbers by F / E or those that are best for itself, whichever leaves less of V / r + r v E / F.
  *
  * The numbers are chosen for blocks, as in adaptive.h. The small picture chooses those of the first samples; later ones
  * are chosen by the block's own samples. Costs are numbers of rays, never times. How a
