@@ -11,6 +11,8 @@ RUN_FIELDS = ["scene", "size", "reference_spp", "method", "seconds", "pair", "sp
 NEAR_ENOUGH = 0.15  # a run whose CPU time is off by more than this share is asked for other samples
 TRIES_MAX = 8
 GROWTH = 8
+AT_DEFAULTS = 0.0  # in place of a time: pictures that end by themselves
+DEFAULTS_SPP = 64  # of methods that do not
 SPP_MAX = 1 << 20
 
 
@@ -57,10 +59,11 @@ def samples_for(seconds, tried):
 # --- runs ---
 
 class Method:
-    """A command with {scene} {out} {seed} {width} {height}, and {spp} or {seconds}."""
+    """A command with {scene} {out} {seed} {width} {height}, and {spp} or {seconds}. by_itself: one for pictures that end
+    at the method's own defaults, if it has any."""
 
-    def __init__(self, name, command):
-        self.name, self.command = name, command
+    def __init__(self, name, command, by_itself=None):
+        self.name, self.command, self.by_itself = name, command, by_itself
         self.takes_samples = "{spp}" in command
         for needed in ("{scene}", "{out}", "{seed}"):
             if needed not in command:
@@ -69,10 +72,11 @@ class Method:
             fail(f"the command of '{name}' has neither {{seconds}} nor {{spp}}")
 
     def render(self, job, seed, out, seconds=0.0, spp=0):
-        """CPU seconds, of all processes that it started and waited for."""
+        """CPU seconds, of all processes that it started and waited for. Without seconds and samples by its defaults."""
         values = {"scene": shlex.quote(str(job.scene)), "out": shlex.quote(str(out)), "seed": seed, "seconds": seconds,
                   "spp": spp, "width": job.width, "height": job.height}
-        command = re.sub(r"\{(scene|out|seed|seconds|spp|width|height)\}", lambda m: str(values[m[1]]), self.command)
+        command = re.sub(r"\{(scene|out|seed|seconds|spp|width|height)\}", lambda m: str(values[m[1]]),
+                         self.command if seconds > 0.0 or spp > 0 else self.by_itself)
         Path(out).unlink(missing_ok=True)
         process = subprocess.Popen(["sh", "-c", command], stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL)
         _, status, usage = os.wait4(process.pid, 0)
@@ -129,7 +133,10 @@ def run_pair(options, job, method, seconds, pair, known, references):
     """known: samples and CPU time of earlier runs of the method on the scene; the pair's own are added."""
     pictures = [Path(options.work) / f"{seed}.exr" for seed in "ab"]
     seeds = [2 * pair - 1, 2 * pair]
-    if not method.takes_samples:
+    if seconds == AT_DEFAULTS:
+        spp = 0 if method.by_itself else DEFAULTS_SPP
+        cpu = [method.render(job, seed, out, spp=spp) for seed, out in zip(seeds, pictures)]
+    elif not method.takes_samples:
         cpu = [method.render(job, seed, out, seconds=seconds) for seed, out in zip(seeds, pictures)]
         spp = 0
     else:
@@ -218,7 +225,8 @@ def write_markdown(path, table, options):
             if prefix + "over_photonmap" not in row:
                 return ""
             return f"{row[prefix + 'over_photonmap']} ({row[prefix + 'over_low']} to {row[prefix + 'over_high']})"
-        lines.append(f"| {row['scene']} | {row['seconds']} | {row['method']} | {row['cpu_s']} | {row['mean_ratio']} | "
+        seconds = row["seconds"] if float(row["seconds"]) != AT_DEFAULTS else "defaults"
+        lines.append(f"| {row['scene']} | {seconds} | {row['method']} | {row['cpu_s']} | {row['mean_ratio']} | "
                      f"{row['error']} | {bracket('')} | {row['trimmed_error']} | {bracket('trimmed_')} |")
     Path(path).write_text("\n".join(lines) + "\n")
 
@@ -279,8 +287,8 @@ def write_plot(path, table):
 
 # ---
 
-def own_command(program, integrator, threads):
-    return (f"{shlex.quote(program)} -q --progress none --noise 0 --spp {{spp}} --seed {{seed}} --integrator {integrator} "
+def own_command(program, integrator, threads, samples="--noise 0 --spp {spp}"):
+    return (f"{shlex.quote(program)} -q --progress none {samples} --seed {{seed}} --integrator {integrator} "
             f"{f'-t {threads} ' if threads else ''}--size {{width}}x{{height}} --type float -o {{out}} {{scene}}")
 
 
@@ -295,7 +303,9 @@ def main():
     parser.add_argument("scenes", nargs="+")
     options = parser.parse_args()
 
-    methods = [Method(name, own_command(options.program, name, options.threads)) for name in ("photonmap", "path")]
+    methods = [Method("photonmap", own_command(options.program, "photonmap", options.threads),
+                      own_command(options.program, "photonmap", options.threads, samples="")),
+               Method("path", own_command(options.program, "path", options.threads))]
     for rival in options.rival:
         name, _, command = rival.partition("=")
         if not re.fullmatch(r"[A-Za-z0-9_.-]+", name) or name in (m.name for m in methods) or not command:
@@ -303,6 +313,9 @@ def main():
         methods.append(Method(name, command))
     jobs = [Job(path, options.width) for path in options.scenes]
     times = [float(t) for t in options.seconds.split(",")]
+    for method in methods:
+        if AT_DEFAULTS in times and not (method.by_itself or method.takes_samples):
+            fail(f"the command of '{method.name}' has no {{spp}}, and ends by no defaults")
 
     runs = Path(options.out) / "runs.csv"
     rows = []

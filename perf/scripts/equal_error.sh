@@ -21,7 +21,8 @@ A SCENE is a file, or the name of one in \$AG_SCENES; without any, all that are 
   --rival 'NAME=COMMAND'  a renderer to hold against: a shell command with {scene} {out} {seed}
                           {width} {height}, and either {seconds} of CPU that it is to take or {spp},
                           samples that are then chosen for it; it writes {out}; may be repeated
-  --seconds LIST          CPU seconds of a picture (10,60,300)
+  --seconds LIST          CPU seconds of a picture (10,60,300); 0: the photon map at its defaults, all else with
+                          64 samples
   --width N               of the pictures (640)
   --pairs N               of seeds (8); medians are told, with intervals
   --reference-spp N       samples of the reference (8192), kept in the build folder

@@ -55,6 +55,15 @@ AG_PROGRAM=/bin/false measure --resume --rival "same=false {scene} {out} {seed} 
     --rival "dim=false {scene} {out} {seed} {spp}" "$box" "$lamp" >/dev/null || fail "--resume measures again"
 cmp "$folder/before.csv" "$folder/out/equal_error.csv" || fail "--resume told other figures"
 
+# at defaults the photon map ends by itself, with no number of samples to tell, and all else has 64
+measure --seconds 0 --pairs 1 --rival "same=$path --spp {spp} {scene}" "$box" >"$folder/said" || fail "at defaults it ended with $?"
+for method in photonmap path same; do
+    samples=$(awk -F, -v method="$method" 'NR == 1 { for (i = 1; i <= NF; i++) column[$i] = i }
+        $column["method"] == method { print $column["spp"] }' "$folder/out/runs.csv")
+    [[ $samples == $([[ $method == photonmap ]] && echo 0 || echo 64) ]] || fail "$method had $samples samples at defaults"
+    grep -q "^| box_with_blocks | defaults | $method |" "$folder/said" || fail "the table does not tell of $method at defaults"
+done
+
 expect_error() { # TEXT ARGUMENTS...
     local text=$1 status=0
     shift
@@ -67,6 +76,7 @@ expect_error "'broken' failed with 3" --rival "broken=exit 3 # {scene} {out} {se
 expect_error "has neither {seconds} nor {spp}" --rival "idle=true {scene} {out} {seed}" "$lamp"
 expect_error "the command of 'idle' has no {out}" --rival "idle=true {scene} {seed} {spp}" "$lamp"
 expect_error "with a name that is not taken" --rival "path=$path --spp {spp} {scene}" "$lamp"
+expect_error "the command of 'timed' has no {spp}, and ends by no defaults" --seconds 0 --rival "timed=true {scene} {out} {seed} {seconds}" "$lamp"
 expect_error "there is no scene 'nowhere'" nowhere
 
 # the arithmetic of intervals and of samples, by hand, and the search for samples with a clock that is a formula
