@@ -14,8 +14,9 @@ enum { BARRIER_STEP = 4 };
  * later, also of each of their camera rays: from one the variance cannot be told. */
 enum { FIRST_LIGHTS_MIN = 4, FIRST_LIGHTS_OF_RAY_MIN = 2 };
 
-/* A fixed number of camera samples needs no standard error (noise.h) of the frame below this, which nobody sees. */
-static const double FIXED_CLEAN = 0.003;
+/* Where blocks cannot trade camera samples for rays, the frame needs no standard error (noise.h) below this, which
+ * nobody sees. */
+static const double CLEAN = 0.003;
 
 /* The frame's numbers depend on its variance and cost, and these on the numbers: each is computed from the other in so
  * many rounds. The pilot's pixels are summed by squares of GROUP by GROUP, since the variance of four samples is hardly
@@ -408,7 +409,7 @@ ag_status splitting_begin(struct ag_film *film, const struct ag_film *pilot, dou
     const int right = all->x0 + all->width, bottom = all->y0 + all->height;
     choice c = make_choice(film, settings);
     const double fixed = fixed_cost / (c.samples * (double)settings->width * (double)settings->height);
-    const double clean = FIXED_CLEAN * FIXED_CLEAN * c.samples;
+    const double clean = CLEAN * CLEAN * c.samples;
     split_prior *prior = &film->prior;
     AG_TRY(find_cost_per_variance(pilot, &c, fixed, clean, &prior->cost_per_variance));
     c.least.further = film_first_split(film, settings).further;
