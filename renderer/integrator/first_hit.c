@@ -12,7 +12,7 @@ static rgb albedo_at(const vertex *v, const sampler *where)
                               sampler_2d(where, SAMPLE_LOBE, SAMPLER_KEY_ALBEDO).x,
                               sampler_2d(where, SAMPLE_SCATTER, SAMPLER_KEY_ALBEDO), &next))
         sum = rgb_add(sum, next.weight);
-    return (rgb){float_clamp(sum.r, 0.0f, 1.0f), float_clamp(sum.g, 0.0f, 1.0f), float_clamp(sum.b, 0.0f, 1.0f)};
+    return rgb_clamp(sum, 0.0f, 1.0f);
 }
 
 static rgb irradiance_at(const transport *t, eye_worker *worker, const vertex *v)

@@ -26,15 +26,11 @@ bool material_always(const scene *s, const material *m)
     return true;
 }
 
-static rgb clamp_to_unit(rgb v)
-{
-    return (rgb){float_clamp(v.r, 0.0f, 1.0f), float_clamp(v.g, 0.0f, 1.0f), float_clamp(v.b, 0.0f, 1.0f)};
-}
-
 void material_look_up_color(const material_lookup *at, uint32_t texture_index, rgb *in_out_color)
 {
     if (texture_index != SCENE_NO_TEXTURE)
-        *in_out_color = clamp_to_unit(texture_filtered_rgb(&at->s->textures, texture_index, at->hit, at->footprint));
+        *in_out_color =
+            rgb_clamp(texture_filtered_rgb(&at->s->textures, texture_index, at->hit, at->footprint), 0.0f, 1.0f);
 }
 
 void material_look_up_facets(const material_lookup *at, const material *m, uint32_t texture_u, uint32_t texture_v,

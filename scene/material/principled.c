@@ -112,20 +112,13 @@ ggx principled_facets(float roughness_u, float roughness_v, float anisotropy)
     return facets;
 }
 
-static rgb bound_sheen(rgb sheen, sheen_model model)
-{
-    const float most = sheen_factor_max(model);
-    return rgb_make(float_clamp(sheen.r, 0.0f, most), float_clamp(sheen.g, 0.0f, most),
-                    float_clamp(sheen.b, 0.0f, most));
-}
-
 void principled_resolve(principled_point *p, rgb specular_color)
 {
     p->reflectance = bound_above(bound_below(p->reflectance));
 #define CLAMP_SHARE(name) p->name = clamp_to_unit(p->name);
     PRINCIPLED_SHARE_LIST(CLAMP_SHARE)
 #undef CLAMP_SHARE
-    p->sheen = bound_sheen(p->sheen, (sheen_model)p->sheen_model);
+    p->sheen = rgb_clamp(p->sheen, 0.0f, sheen_factor_max((sheen_model)p->sheen_model));
     p->has_sheen = !rgb_is_black(p->sheen);
     float f0 = 1.0f; /* ior 0 is glTF's word for an infinite one */
     if (p->ior > 0.0f) {

@@ -87,6 +87,11 @@ static inline float rgb_max(rgb a)
     const float of_two = float_max(a.b, a.g), known = of_two == of_two ? of_two : a.b, all = float_max(known, a.r);
     return all == all ? all : known;
 }
+/* Each part as by float_clamp. */
+static inline rgb rgb_clamp(rgb a, float low, float high)
+{
+    return (rgb){float_clamp(a.r, low, high), float_clamp(a.g, low, high), float_clamp(a.b, low, high)};
+}
 static inline bool rgb_is_black(rgb a) { return a.r == 0.0f && a.g == 0.0f && a.b == 0.0f; }
 static inline bool rgb_is_finite(rgb a) { return isfinite(a.r) && isfinite(a.g) && isfinite(a.b); }
 /* Relative luminance, Rec. 709 primaries (ITU-R BT.709-6). */

@@ -139,10 +139,11 @@ static ag_status add_picture(importer *i, const import_picture *p, picture_use u
 
 static float clamp01(float x) { return float_clamp(x, 0.0f, 1.0f); } /* 0 for NaN */
 
-static rgb clamp_color(rgb c) { return rgb_make(clamp01(c.r), clamp01(c.g), clamp01(c.b)); }
-
 /* Converts a share of light to the working space. */
-static rgb share_of(const importer *i, rgb c) { return working_space_reflectance(&i->scene->space, clamp_color(c)); }
+static rgb share_of(const importer *i, rgb c)
+{
+    return working_space_reflectance(&i->scene->space, rgb_clamp(c, 0.0f, 1.0f));
+}
 
 static bool is_given(float x) { return x >= 0.0f && isfinite(x); }
 

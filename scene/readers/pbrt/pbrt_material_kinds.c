@@ -11,11 +11,6 @@
 #include <stdio.h>
 #include <string.h>
 
-static rgb clamp_color(rgb c)
-{
-    return rgb_make(float_clamp(c.r, 0.0f, 1.0f), float_clamp(c.g, 0.0f, 1.0f), float_clamp(c.b, 0.0f, 1.0f));
-}
-
 static ag_status read_reflectance(pbrt_parser *parser, parameter_list *list, material *m)
 {
     rgb *r = &m->reflectance;
@@ -23,7 +18,7 @@ static ag_status read_reflectance(pbrt_parser *parser, parameter_list *list, mat
     if (rgb_max(*r) > 1.0f) {
         const parameter *p = parameter_list_find(list, "reflectance");
         log_at(parser->log, AG_LOG_WARNING, p->where, "\"reflectance\" is above 1: 1 is used");
-        *r = clamp_color(*r);
+        *r = rgb_clamp(*r, 0.0f, 1.0f);
     }
     return AG_OK;
 }
@@ -185,7 +180,7 @@ static ag_status read_coat_walk(pbrt_parser *parser, parameter_list *list, mater
     if (rgb_max(m->coat_albedo) > 1.0f) {
         const parameter *p = parameter_list_find(list, "albedo");
         log_at_once(parser->log, AG_LOG_WARNING, p->where, "coat albedo", "\"albedo\" is above 1: 1 is used");
-        m->coat_albedo = clamp_color(m->coat_albedo);
+        m->coat_albedo = rgb_clamp(m->coat_albedo, 0.0f, 1.0f);
     }
     return AG_OK;
 }
@@ -356,9 +351,10 @@ static ag_status read_flesh(pbrt_parser *parser, parameter_list *list, const cha
         AG_TRY(parameter_get_float(list, parser->log, "g", &g));
     }
     float s = 1.0f - float_clamp(g, -1.0f, 1.0f);
-    m->reflectance = clamp_color(rgb_make(half_space_reflectance(sigma_a.r, s * sigma_s.r),
-                                          half_space_reflectance(sigma_a.g, s * sigma_s.g),
-                                          half_space_reflectance(sigma_a.b, s * sigma_s.b)));
+    m->reflectance = rgb_clamp(rgb_make(half_space_reflectance(sigma_a.r, s * sigma_s.r),
+                                        half_space_reflectance(sigma_a.g, s * sigma_s.g),
+                                        half_space_reflectance(sigma_a.b, s * sigma_s.b)),
+                               0.0f, 1.0f);
     return AG_OK;
 }
 
