@@ -67,8 +67,9 @@ ag_status adaptive_decide(struct ag_film *film, run_context *run, const ag_rende
     uint32_t barrier = adaptive_barrier(film), most = (uint32_t)settings->samples_per_pixel;
     *out_is_done = false;
     if (barrier == 0) {
+        const uint32_t least = (uint32_t)adaptive_least_samples(settings);
         for (size_t i = 0; i < film_area_count(film); i++)
-            film->wanted[i] = (uint32_t)adaptive_least_samples(settings);
+            film->wanted[i] = least;
         return AG_OK;
     }
     uint32_t step = barrier / 4 > 4 ? barrier / 4 : 4;

@@ -46,8 +46,7 @@ typedef struct choice {
     split_counts least, most;
     uint32_t least_lights; /* of all camera rays */
     double uneven;         /* the share of variance between camera rays that is left in the mean of a pixel's samples */
-    double samples;        /* which a pixel has at least */
-    double variance_allowed; /* of a pixel's first so many samples: noisier ones have more; 0: none has more */
+    double variance_allowed; /* of a sample where the least number is enough; 0: no pixel has more */
     double most_of_least;    /* the most samples of a pixel, as a multiple of the least */
 } choice;
 
@@ -267,7 +266,6 @@ static choice make_choice(const struct ag_film *film, const ag_render_settings *
                 .most = sample_split_most(settings, true),
                 .least_lights = 1,
                 .uneven = 1.0 / sqrt(samples),
-                .samples = samples,
                 .variance_allowed = level * level * samples,
                 .most_of_least = (double)settings->samples_per_pixel / samples};
     c.most.further = film_further(film, c.most.further);
@@ -408,8 +406,9 @@ ag_status splitting_begin(struct ag_film *film, const struct ag_film *pilot, dou
     const film_area *all = &film->area;
     const int right = all->x0 + all->width, bottom = all->y0 + all->height;
     choice c = make_choice(film, settings);
-    const double fixed = fixed_cost / (c.samples * (double)settings->width * (double)settings->height);
-    const double clean = CLEAN * CLEAN * c.samples;
+    const double samples = (double)adaptive_least_samples(settings);
+    const double fixed = fixed_cost / (samples * (double)settings->width * (double)settings->height);
+    const double clean = CLEAN * CLEAN * samples;
     split_prior *prior = &film->prior;
     AG_TRY(find_cost_per_variance(pilot, &c, fixed, clean, &prior->cost_per_variance));
     c.least.further = film_first_split(film, settings).further;

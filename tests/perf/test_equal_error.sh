@@ -33,10 +33,12 @@ for scene in box_with_blocks lamp_sphere; do
     [[ $(figure $scene photonmap over_photonmap) == 1 ]] || fail "the photon map is not as good as itself"
 done
 # the same program by another name has the same error for a sample; how many samples it got is a matter of time
-error_of_a_sample() { # METHOD: mean over the pairs of box_with_blocks
+runs_of() { # METHOD: error and number of samples of each pair of box_with_blocks
     awk -F, -v method="$1" 'NR == 1 { for (i = 1; i <= NF; i++) column[$i] = i }
-        $column["scene"] == "box_with_blocks" && $column["method"] == method { sum += $column["error"] * $column["spp"]; n++ }
-        END { if (n == 0) exit 1; print sum / n }' "$folder/out/runs.csv"
+        $column["scene"] == "box_with_blocks" && $column["method"] == method { print $column["error"], $column["spp"] }' "$folder/out/runs.csv"
+}
+error_of_a_sample() { # METHOD: mean over the pairs
+    runs_of "$1" | awk '{ sum += $1 * $2; n++ } END { if (n == 0) exit 1; print sum / n }'
 }
 path_error=$(error_of_a_sample path) same_error=$(error_of_a_sample same)
 echo "error of a sample: path $path_error, rival $same_error"
@@ -58,8 +60,7 @@ cmp "$folder/before.csv" "$folder/out/equal_error.csv" || fail "--resume told ot
 # at defaults the photon map ends by itself, with no number of samples to tell, and all else has 64
 measure --seconds 0 --pairs 1 --rival "same=$path --spp {spp} {scene}" "$box" >"$folder/said" || fail "at defaults it ended with $?"
 for method in photonmap path same; do
-    samples=$(awk -F, -v method="$method" 'NR == 1 { for (i = 1; i <= NF; i++) column[$i] = i }
-        $column["method"] == method { print $column["spp"] }' "$folder/out/runs.csv")
+    read -r _ samples <<<"$(runs_of "$method")"
     [[ $samples == $([[ $method == photonmap ]] && echo 0 || echo 64) ]] || fail "$method had $samples samples at defaults"
     grep -q "^| box_with_blocks | defaults | $method |" "$folder/said" || fail "the table does not tell of $method at defaults"
 done
